@@ -1,0 +1,146 @@
+//! Samplers: from (seed, pixel, sample index, dimension) to numbers in `[0, 1)`.
+
+mod kind;
+mod padded;
+mod permute;
+mod sobol;
+mod stratified;
+mod zsobol;
+
+pub use kind::{Mapped, SamplerKind};
+
+use crate::Dimension;
+use crate::hash::{combine, unit_f32};
+use sobol::SobolSample;
+use stratified::{Stratified, StratifiedSample};
+use tenfold_math::{UVec2, Vec2};
+
+/// A rule that spreads the samples of a pixel, and of its neighbours, over all dimensions.
+///
+/// It has no state: every number is a pure function of the sampler's settings, the pixel, the index and the dimension.
+/// Indices from 0 to `samples_per_pixel - 1` form a round, in which the pattern is balanced; any further
+/// indices form further rounds of the same kind, independent of each other. Every number by itself is
+/// uniform over seeds, whatever the count of samples.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Sampler {
+    kind: SamplerKind,
+    samples_per_pixel: u32,
+    seed: u64,
+    grid: Stratified,
+}
+
+/// One sample of one pixel: asked for numbers by dimension. Cheap to copy.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct PixelSample {
+    pixel: UVec2,
+    index: u32,
+    /// Hash of the seed, the pixel and the index.
+    identity: u64,
+    pattern: Pattern,
+}
+
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Pattern {
+    Independent,
+    Stratified(StratifiedSample),
+    Sobol(SobolSample),
+}
+
+impl Sampler {
+    /// A sampler for `samples_per_pixel` samples a round (at least one). The pattern does not depend on the size
+    /// of the picture: a crop, and a larger picture, share the samples of the pixels they share.
+    pub fn new(kind: SamplerKind, samples_per_pixel: u32, seed: u64) -> Self {
+        let samples_per_pixel = samples_per_pixel.max(1);
+        Self { kind, samples_per_pixel, seed, grid: Stratified::new(samples_per_pixel) }
+    }
+
+    /// Which rule it is.
+    pub fn kind(&self) -> SamplerKind {
+        self.kind
+    }
+
+    /// Samples of a pixel in one round.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
+    /// The seed it was made with.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The sample `index` of `pixel`; any index is good.
+    #[inline]
+    pub fn at(&self, pixel: UVec2, index: u32) -> PixelSample {
+        let position = u64::from(pixel.y) << 32 | u64::from(pixel.x);
+        let pixel_seed = combine(self.seed, position);
+        let identity = combine(pixel_seed, u64::from(index));
+        let pattern = match self.kind {
+            SamplerKind::Independent => Pattern::Independent,
+            SamplerKind::Stratified => {
+                let (round, index) = self.round(index);
+                Pattern::Stratified(self.grid.at(combine(pixel_seed, !round), index))
+            }
+            SamplerKind::PaddedSobol => {
+                let (round, index) = self.round(index);
+                Pattern::Sobol(padded::at(combine(pixel_seed, !round), index, self.samples_per_pixel))
+            }
+            SamplerKind::ZSobol => {
+                let (round, index) = self.round(index);
+                Pattern::Sobol(zsobol::at(combine(self.seed, !round), pixel, index, self.samples_per_pixel))
+            }
+        };
+        PixelSample { pixel, index, identity, pattern }
+    }
+
+    #[inline]
+    fn round(&self, index: u32) -> (u64, u32) {
+        // Most indices are in the first round: spare them the division.
+        if index < self.samples_per_pixel {
+            (0, index)
+        } else {
+            (u64::from(index / self.samples_per_pixel), index % self.samples_per_pixel)
+        }
+    }
+}
+
+impl PixelSample {
+    /// The pixel.
+    pub fn pixel(&self) -> UVec2 {
+        self.pixel
+    }
+
+    /// The sample's index in the pixel.
+    pub fn index(&self) -> u32 {
+        self.index
+    }
+
+    /// The number of a dimension, in `[0, 1)`.
+    #[inline]
+    pub fn get_1d(&self, dimension: Dimension) -> f32 {
+        match &self.pattern {
+            Pattern::Independent => unit_f32(self.hash(dimension) as u32),
+            Pattern::Stratified(s) => s.get_1d(dimension.key(), self.hash(dimension)),
+            Pattern::Sobol(s) => s.get_1d(dimension.key()),
+        }
+    }
+
+    /// The two numbers of a dimension, each in `[0, 1)`.
+    #[inline]
+    pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
+        match &self.pattern {
+            Pattern::Independent => {
+                let bits = self.hash(dimension);
+                Vec2::new(unit_f32(bits as u32), unit_f32((bits >> 32) as u32))
+            }
+            Pattern::Stratified(s) => s.get_2d(dimension.key(), self.hash(dimension)),
+            Pattern::Sobol(s) => s.get_2d(dimension.key()),
+        }
+    }
+
+    /// 64 random bits of a dimension, without any pattern over samples: to seed what needs many numbers.
+    #[inline]
+    pub fn hash(&self, dimension: Dimension) -> u64 {
+        combine(self.identity, u64::from(dimension.key()))
+    }
+}
