@@ -1,0 +1,121 @@
+//! Meshes: shared vertices, and what is wrong with bad ones.
+
+mod bilinear_mesh;
+mod triangle_mesh;
+
+pub use bilinear_mesh::BilinearMesh;
+pub use triangle_mesh::TriangleMesh;
+pub(crate) use triangle_mesh::is_degenerate;
+
+use tenfold_math::{Transform, Vec2, Vec3};
+
+/// What a mesh is made from, still in object space.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshParts {
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Vertex normals, of any length.
+    pub normals: Option<Vec<Vec3>>,
+    /// Vertex tangents (pbrt's "S").
+    pub tangents: Option<Vec<Vec3>>,
+    /// Vertex texture coordinates.
+    pub uvs: Option<Vec<Vec2>>,
+    /// Vertex indices: three for a triangle, four for a patch (in the order 00, 10, 01, 11).
+    pub indices: Vec<u32>,
+    /// For each primitive, the face of the file that it came from.
+    pub face_indices: Option<Vec<u32>>,
+}
+
+/// Why a mesh was refused.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// There are not whole primitives in the index list.
+    #[error("the number of vertex indices, {count}, is not a multiple of {arity}")]
+    IndexCount {
+        /// How many indices there are.
+        count: usize,
+        /// Vertices of one primitive.
+        arity: usize,
+    },
+    /// An index points past the last vertex.
+    #[error("vertex index {index} (number {at} of the list) is out of range: there are {vertices} vertices")]
+    IndexOutOfRange {
+        /// Its position in the list.
+        at: usize,
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// An attribute has another number of values than there are vertices or primitives.
+    #[error("there are {count} {attribute}, but {expected} are needed")]
+    AttributeCount {
+        /// The attribute's name in the plural.
+        attribute: &'static str,
+        /// How many values it has.
+        count: usize,
+        /// How many are needed.
+        expected: usize,
+    },
+    /// A value is NaN or infinite.
+    #[error("value {at} of the {attribute} is not finite")]
+    NotFinite {
+        /// The attribute's name in the plural.
+        attribute: &'static str,
+        /// The index of the value.
+        at: usize,
+    },
+    /// There are more primitives than an index can name.
+    #[error("{count} primitives are too many for one mesh")]
+    TooLarge {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl MeshParts {
+    /// Refuses what cannot be a mesh of primitives with `arity` vertices.
+    pub(crate) fn validate(&self, arity: usize) -> Result<(), MeshError> {
+        let (count, vertices) = (self.indices.len(), self.positions.len());
+        if count % arity != 0 {
+            return Err(MeshError::IndexCount { count, arity });
+        }
+        if count / arity >= (1 << 31) {
+            return Err(MeshError::TooLarge { count: count / arity });
+        }
+        let lengths = [
+            ("normals", self.normals.as_ref().map(Vec::len), vertices),
+            ("tangents", self.tangents.as_ref().map(Vec::len), vertices),
+            ("texture coordinates", self.uvs.as_ref().map(Vec::len), vertices),
+            ("face indices", self.face_indices.as_ref().map(Vec::len), count / arity),
+        ];
+        for (attribute, length, expected) in lengths {
+            if let Some(count) = length.filter(|&length| length != expected) {
+                return Err(MeshError::AttributeCount { attribute, count, expected });
+            }
+        }
+        if let Some(at) = self.indices.iter().position(|&i| i as usize >= vertices) {
+            return Err(MeshError::IndexOutOfRange { at, index: self.indices[at], vertices });
+        }
+        finite("positions", &self.positions, |p| p.is_finite())?;
+        finite("normals", self.normals.as_deref().unwrap_or(&[]), |n| n.is_finite())?;
+        finite("tangents", self.tangents.as_deref().unwrap_or(&[]), |s| s.is_finite())?;
+        finite("texture coordinates", self.uvs.as_deref().unwrap_or(&[]), |uv| uv.is_finite())
+    }
+
+    /// The parts mapped by `to_world`. Normals turn around with reversed orientation, as pbrt has it.
+    pub(crate) fn transformed(mut self, to_world: &Transform, reverse_orientation: bool) -> Self {
+        self.positions.iter_mut().for_each(|p| *p = to_world.point(*p));
+        let sign = if reverse_orientation { -1.0 } else { 1.0 };
+        self.normals.iter_mut().flatten().for_each(|n| *n = sign * to_world.normal(*n));
+        self.tangents.iter_mut().flatten().for_each(|s| *s = to_world.vector(*s));
+        self
+    }
+}
+
+fn finite<T>(attribute: &'static str, values: &[T], is_finite: impl Fn(&T) -> bool) -> Result<(), MeshError> {
+    match values.iter().position(|v| !is_finite(v)) {
+        Some(at) => Err(MeshError::NotFinite { attribute, at }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,306 @@
+use super::{ShapeHit, quadric::integrate};
+use crate::{
+    BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
+    interaction::weingarten,
+    sample::{cosine_weights, pdf_by_solid_angle},
+};
+use std::ops::{Add, Mul};
+use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
+use tenfold_sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
+
+/// Rectangles that fill less solid angle than this are sampled by area, which hardly differs there (pbrt's bound).
+const MIN_SPHERICAL_AREA: f32 = 1e-4;
+
+/// A bilinear patch of a mesh: `p(u, v)` interpolates four corners, given in the order 00, 10, 01, 11.
+#[derive(Copy, Clone, Debug)]
+pub struct BilinearPatch<'a> {
+    mesh: &'a BilinearMesh,
+    index: usize,
+}
+
+impl<'a> BilinearPatch<'a> {
+    pub(super) fn new(mesh: &'a BilinearMesh, index: usize) -> Self {
+        Self { mesh, index }
+    }
+
+    /// Vertex positions.
+    #[inline]
+    pub fn positions(&self) -> [Vec3; 4] {
+        self.mesh.positions(self.index)
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        Bounds3::around(self.positions())
+    }
+
+    /// Whether the patch is a rectangle, up to rounding.
+    pub fn is_rectangle(&self) -> bool {
+        let [p00, p10, p01, p11] = self.positions();
+        let (eu, ev) = (p10 - p00, p01 - p00);
+        let (lu, lv) = (eu.length(), ev.length());
+        let skew = (p11 - p10 - ev).length();
+        lu > 0.0 && lv > 0.0 && skew <= 1e-5 * lu.min(lv) && eu.dot(ev).abs() <= 1e-5 * lu * lv
+    }
+
+    /// The geometric normal at parameters `uv`, where `∂p/∂u × ∂p/∂v` is `n` (of any length).
+    fn orient(&self, n: Vec3, uv: Vec2) -> Vec3 {
+        match self.mesh.normals(self.index) {
+            Some(normals) if n.dot(bilerp(uv, normals)) < 0.0 => -n,
+            Some(_) => n,
+            None if self.mesh.flip => -n,
+            None => n,
+        }
+    }
+
+    pub(super) fn normal_cone(&self) -> NormalCone {
+        // The unnormalised normal is itself bilinear, so the corners' ones span it.
+        let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| {
+            let [dpdu, dpdv] = derivatives(uv, self.positions());
+            self.orient(dpdu.cross(dpdv).normalize_or_zero(), uv)
+        });
+        if let Some(normals) = self.mesh.normals(self.index)
+            && corners.iter().any(|n| normals.iter().any(|ns| n.dot(*ns) < 0.0))
+        {
+            return NormalCone::EVERYWHERE;
+        }
+        let Some(axis) = corners.iter().sum::<Vec3>().try_normalize() else {
+            return NormalCone::EVERYWHERE;
+        };
+        let cos_theta =
+            corners.iter().filter(|n| **n != Vec3::ZERO).map(|n| axis.dot(*n)).fold(1f32, f32::min);
+        if cos_theta > 0.0 { NormalCone { axis, cos_theta } } else { NormalCone::EVERYWHERE }
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        let p = self.positions();
+        let area = integrate(4, |u| {
+            integrate(4, |v| {
+                let [dpdu, dpdv] = derivatives(Vec2::new(u as f32, v as f32), p);
+                f64::from(dpdu.cross(dpdv).length())
+            })
+        });
+        area as f32
+    }
+
+    /// Reshetov (2019), "Cool Patches": the ray meets the line at `u` where `((a(u) − o) × d) · (b(u) − a(u)) = 0`, a
+    /// quadratic equation; in double precision, so that neighbours leave no gap that a float could find.
+    #[inline]
+    pub(super) fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        mut accept: impl FnMut(ShapeHit) -> bool,
+    ) -> Option<ShapeHit> {
+        let [p00, p10, p01, p11] = self.positions().map(Vec3::as_dvec3);
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let (e00, e11) = (p01 - p00, p11 - p10);
+        let a = (p10 - p00).cross(d).dot(e11 - e00);
+        let c = (p00 - o).cross(d).dot(e00);
+        let b = (p10 - o).cross(d).dot(e11) - (a + c);
+        let mut hits = [None; 2];
+        let size = [p00, p10, p01, p11, o].iter().fold(0.0, |m, p| p.abs().max_element().max(m));
+        let t_min = 1e-13 * size / d.length();
+        for (slot, u) in hits.iter_mut().zip(quadratic_roots(a, b, c)) {
+            // Also leaves out NaN.
+            if !(-SLACK..=1.0 + SLACK).contains(&u) {
+                continue;
+            }
+            let start = p00 + u * (p10 - p00);
+            let across = p01 + u * (p11 - p01) - start;
+            let delta = start - o;
+            let perpendicular = d.cross(across);
+            let scale = 1.0 / perpendicular.length_squared();
+            let v = delta.cross(d).dot(perpendicular) * scale;
+            let t = delta.cross(across).dot(perpendicular) * scale;
+            if (-SLACK..=1.0 + SLACK).contains(&v) && t > t_min && (t as f32) < t_max {
+                let inside = |x: f64| (x as f32).clamp(0.0, 1.0);
+                *slot = Some(ShapeHit { t: t as f32, u: inside(u), v: inside(v) });
+            }
+        }
+        if let [Some(first), Some(second)] = hits
+            && second.t < first.t
+        {
+            hits.swap(0, 1);
+        }
+        hits.into_iter().flatten().find(|hit| accept(*hit))
+    }
+
+    pub(super) fn uv(&self, _: &Ray, hit: &ShapeHit) -> Vec2 {
+        self.texture_uv(Vec2::new(hit.u, hit.v))
+    }
+
+    fn texture_uv(&self, uv: Vec2) -> Vec2 {
+        self.mesh.uvs(self.index).map_or(uv, |corners| bilerp(uv, corners))
+    }
+
+    pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
+        let p = self.positions();
+        let uv = Vec2::new(hit.u, hit.v);
+        let [mut dpdu, mut dpdv] = derivatives(uv, p);
+        let n = self.unit_normal(uv);
+        let twist = (p[0] - p[2]) + (p[3] - p[1]);
+        let [mut dndu, mut dndv] = weingarten(dpdu, dpdv, Vec3::ZERO, twist, Vec3::ZERO);
+        let by_texture = self.texture_jacobian(uv);
+        if let Some(j) = by_texture {
+            let by_st = |du: Vec3, dv: Vec3| [du * j[0].x + dv * j[0].y, du * j[1].x + dv * j[1].y];
+            let [dpds, mut dpdt] = by_st(dpdu, dpdv);
+            let [dnds, mut dndt] = by_st(dndu, dndv);
+            // The frame keeps its hand where the texture is mirrored.
+            if dpds.cross(dpdt).dot(n) < 0.0 {
+                (dpdt, dndt) = (-dpdt, -dndt);
+            }
+            if dpds.cross(dpdt) != Vec3::ZERO {
+                (dpdu, dpdv, dndu, dndv) = (dpds, dpdt, dnds, dndt);
+            }
+        }
+        let mut surface = SurfaceInteraction::new(
+            bilerp(uv, p),
+            gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
+            self.texture_uv(uv),
+            uv,
+            [dpdu, dpdv, dndu, dndv],
+            false,
+            ray,
+        );
+        surface.n = if self.mesh.flip { -n } else { n };
+        surface.shading.n = surface.n;
+        surface.face_index = self.mesh.face_index(self.index);
+        let Some(normals) = self.mesh.normals(self.index) else { return surface };
+        if let Some(ns) = bilerp(uv, normals).try_normalize() {
+            let [mut dndu, mut dndv] = derivatives(uv, normals);
+            if let Some(j) = by_texture {
+                (dndu, dndv) = (dndu * j[0].x + dndv * j[0].y, dndu * j[1].x + dndv * j[1].y);
+            }
+            // Turn the tangents along with the normal, by the shortest way.
+            let turn = Quat::from_rotation_arc(surface.n, ns);
+            surface.shading = Shading { n: ns, dpdu: turn * dpdu, dpdv: turn * dpdv, dndu, dndv };
+            if surface.n.dot(ns) < 0.0 {
+                surface.n = -surface.n;
+            }
+        }
+        surface
+    }
+
+    /// Derivatives of the parameters by the texture coordinates: `[∂(u,v)/∂s, ∂(u,v)/∂t]`; `None` without texture coordinates
+    /// or where they do not span the plane.
+    fn texture_jacobian(&self, uv: Vec2) -> Option<[Vec2; 2]> {
+        let [du, dv] = derivatives(uv, self.mesh.uvs(self.index)?);
+        let determinant = du.perp_dot(dv);
+        (determinant.abs() > 1e-12)
+            .then(|| [Vec2::new(dv.y, -du.y) / determinant, Vec2::new(-dv.x, du.x) / determinant])
+    }
+
+    /// Unit `∂p/∂u × ∂p/∂v`; where an edge has shrunk to a point, that of the middle.
+    fn unit_normal(&self, uv: Vec2) -> Vec3 {
+        let normal = |uv: Vec2| {
+            let [dpdu, dpdv] = derivatives(uv, self.positions());
+            dpdu.as_dvec3().cross(dpdv.as_dvec3()).try_normalize()
+        };
+        normal(uv).or_else(|| normal(Vec2::splat(0.5))).map_or(Vec3::Z, |n| n.as_vec3())
+    }
+
+    fn point(&self, uv: Vec2, pdf: f32) -> ShapeSample {
+        let p = self.positions();
+        ShapeSample {
+            p: bilerp(uv, p),
+            p_error: gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
+            n: self.orient(self.unit_normal(uv), uv),
+            uv: self.texture_uv(uv),
+            param: uv,
+            pdf,
+        }
+    }
+
+    /// Areas of the parallelograms at the corners: the density over (u, v) follows them.
+    fn area_weights(&self) -> [f32; 4] {
+        let p = self.positions();
+        [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| {
+            let [dpdu, dpdv] = derivatives(uv, p);
+            dpdu.cross(dpdv).length()
+        })
+    }
+
+    fn pdf_at(&self, uv: Vec2) -> f32 {
+        let [dpdu, dpdv] = derivatives(uv, self.positions());
+        bilinear_pdf(uv, self.area_weights()) / dpdu.cross(dpdv).length()
+    }
+
+    pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {
+        let uv = sample_bilinear(u, self.area_weights());
+        let pdf = self.pdf_at(uv);
+        (pdf.is_finite() && pdf > 0.0).then(|| self.point(uv, pdf))
+    }
+
+    pub(super) fn pdf_area(&self, point: &SurfacePoint) -> f32 {
+        let pdf = self.pdf_at(point.param);
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    fn seen_from(&self, reference: &ReferencePoint) -> Option<SphericalRectangle> {
+        if !self.is_rectangle() {
+            return None;
+        }
+        let [p00, p10, p01, _] = self.positions();
+        SphericalRectangle::new(reference.p, p00, p10 - p00, p01 - p00)
+            .filter(|r| r.solid_angle() > MIN_SPHERICAL_AREA)
+    }
+
+    fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
+        let to_corner = self.positions().map(|p| (p - reference.p).normalize_or_zero());
+        cosine_weights(reference.ns, to_corner)
+    }
+
+    pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
+        let Some(rectangle) = self.seen_from(reference) else {
+            return self.sample_area(u)?.by_solid_angle(reference);
+        };
+        let (mut u, mut pdf) = (u, rectangle.pdf());
+        if reference.ns != Vec3::ZERO {
+            let weights = self.corner_weights(reference);
+            u = sample_bilinear(u, weights);
+            pdf *= bilinear_pdf(u, weights);
+        }
+        Some(self.point(rectangle.sample(u).uv, pdf))
+    }
+
+    pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        let Some(rectangle) = self.seen_from(reference) else {
+            return pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n);
+        };
+        if reference.ns == Vec3::ZERO {
+            return rectangle.pdf();
+        }
+        let u = rectangle.invert(point.param);
+        rectangle.pdf() * bilinear_pdf(u, self.corner_weights(reference))
+    }
+}
+
+/// How far outside [0, 1] a parameter still counts as inside: the rounding of double precision.
+const SLACK: f64 = 1e-11;
+
+/// Roots of `a·u² + b·u + c`, NaN where there are none or fewer.
+fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
+    if a == 0.0 {
+        return [-c / b, f64::NAN];
+    }
+    let discriminant = b * b - 4.0 * a * c;
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    [q / a, c / q]
+}
+
+/// Bilinear interpolation of values at the corners 00, 10, 01, 11.
+fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(uv: Vec2, [x00, x10, x01, x11]: [T; 4]) -> T {
+    let (u, v) = (uv.x, uv.y);
+    let low = x00 * (1.0 - u) + x10 * u;
+    let high = x01 * (1.0 - u) + x11 * u;
+    low * (1.0 - v) + high * v
+}
+
+/// Derivatives by u and v of [`bilerp`].
+fn derivatives<T>(uv: Vec2, [x00, x10, x01, x11]: [T; 4]) -> [T; 2]
+where
+    T: Copy + Mul<f32, Output = T> + Add<Output = T> + std::ops::Sub<Output = T>,
+{
+    let (u, v) = (uv.x, uv.y);
+    [(x10 - x00) * (1.0 - v) + (x11 - x01) * v, (x01 - x00) * (1.0 - u) + (x11 - x10) * u]
+}

@@ -1,0 +1,149 @@
+//! What the quadrics share: a transform, double-precision rays in object space, and area under affine maps.
+
+use crate::SurfaceInteraction;
+use glam::DVec3;
+use tenfold_math::ops;
+use tenfold_math::{Ray, Transform, Vec3, gamma};
+
+/// Why a quadric was refused.
+#[derive(Copy, Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// A parameter is NaN, infinite, or outside its range.
+    #[error("{parameter} = {value} is not possible")]
+    Parameter {
+        /// The parameter's name.
+        parameter: &'static str,
+        /// Its value.
+        value: f32,
+    },
+}
+
+/// Refuses NaN and infinite parameters.
+pub(super) fn check_finite(parameters: &[(&'static str, f32)]) -> Result<(), ShapeError> {
+    match parameters.iter().find(|(_, value)| !value.is_finite()) {
+        Some(&(parameter, value)) => Err(ShapeError::Parameter { parameter, value }),
+        None => Ok(()),
+    }
+}
+
+/// How a quadric lies in the world.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub(super) struct Placement {
+    pub(super) to_world: Transform,
+    /// Whether normals are turned around: reversed orientation or a mirroring transform, but not both.
+    pub(super) flip: bool,
+    /// The factor of lengths, where the transform keeps shapes (rotates, moves and scales alike on all axes).
+    pub(super) similarity: Option<f32>,
+}
+
+impl Placement {
+    pub(super) fn new(to_world: Transform, reverse_orientation: bool) -> Self {
+        let m = to_world.affine().matrix3;
+        let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+        let s2 = x.length_squared();
+        let near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * s2;
+        let similar = near(y.length_squared(), s2)
+            && near(z.length_squared(), s2)
+            && near(x.dot(y), 0.0)
+            && near(y.dot(z), 0.0)
+            && near(z.dot(x), 0.0);
+        let similarity = similar.then(|| ops::cbrt(m.determinant().abs()));
+        Self { to_world, flip: reverse_orientation ^ to_world.swaps_handedness(), similarity }
+    }
+
+    /// `n` as a geometric normal in the world, where `n` is the outward one of object space, of any length.
+    pub(super) fn normal(&self, n: Vec3) -> Vec3 {
+        let n = self.to_world.normal(n).normalize_or(Vec3::Z);
+        if self.flip { -n } else { n }
+    }
+
+    /// World area over object area, of a small piece of surface with unit normal `n` in object space:
+    /// `|det M| · |M⁻ᵀ n|`.
+    pub(super) fn area_scale(&self, n: Vec3) -> f32 {
+        match self.similarity {
+            Some(s) => s * s,
+            None => self.to_world.affine().matrix3.determinant().abs() * self.to_world.normal(n).length(),
+        }
+    }
+
+    /// A surface of object space (but for `wo`) in the world.
+    pub(super) fn place(&self, surface: &SurfaceInteraction) -> SurfaceInteraction {
+        SurfaceInteraction { wo: surface.wo, ..surface.transformed(&self.to_world) }
+    }
+
+    pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
+        let m = self.to_world.inverse_affine();
+        let matrix = m.matrix3.as_dmat3();
+        let translation = Vec3::from(m.translation);
+        let abs = |v: glam::Vec3A| Vec3::from(v).abs();
+        // The inverse is stored rounded to floats: that is the error of the origin, since the arithmetic here is double.
+        let sum = abs(m.matrix3.x_axis) * ray.origin.x.abs()
+            + abs(m.matrix3.y_axis) * ray.origin.y.abs()
+            + abs(m.matrix3.z_axis) * ray.origin.z.abs()
+            + translation.abs();
+        ObjectRay {
+            o: matrix * ray.origin.as_dvec3() + translation.as_dvec3(),
+            d: matrix * ray.direction.as_dvec3(),
+            o_error: (gamma(3) * sum).as_dvec3(),
+        }
+    }
+}
+
+/// A ray in object space.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct ObjectRay {
+    pub(super) o: DVec3,
+    pub(super) d: DVec3,
+    /// Bound on the error of `o` from the rounding of the transform.
+    pub(super) o_error: DVec3,
+}
+
+impl ObjectRay {
+    pub(super) fn at(&self, t: f64) -> DVec3 {
+        self.o + t * self.d
+    }
+}
+
+/// Roots of a quadric along a ray, and from where on they count as in front of the origin.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Roots {
+    pub(super) t: [f64; 2],
+    /// A root up to here may be the origin's own surface.
+    pub(super) t_error: f64,
+}
+
+/// Roots of `|o + t·d|² = r²`, where `o` is known within `o_error` (leave out z for a cylinder by setting it to 0).
+pub(super) fn roots(o: DVec3, d: DVec3, o_error: DVec3, r: f64) -> Option<Roots> {
+    let a = d.length_squared();
+    if !(a > 0.0) {
+        return None;
+    }
+    // From the point of closest approach: no cancellation in the discriminant far away
+    // (Haines et al. 2019, "Precision Improvements for Ray/Sphere Intersection").
+    let to_closest = -o.dot(d) / a;
+    let closest = o + to_closest * d;
+    let discriminant = r * r - closest.length_squared();
+    if !(discriminant >= 0.0) {
+        return None;
+    }
+    let half = (discriminant / a).sqrt();
+    // |o|² − r² is off by `shift` at most: near a double root t then moves by √(shift/a), elsewhere by
+    // shift / (2·a·half).
+    let shift = 2.0 * (o.abs().dot(o_error) + r * r * f64::from(f32::EPSILON));
+    let t_error = (shift / a).sqrt().min(shift / (2.0 * a * half));
+    Some(Roots { t: [to_closest - half, to_closest + half], t_error })
+}
+
+/// Nodes and weights of Gauss's quadrature with four points on [0, 1].
+pub(super) const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// `∫₀¹ f`, with the rule of [`GAUSS`] on each of `panels` equal parts.
+pub(super) fn integrate(panels: usize, f: impl Fn(f64) -> f64) -> f64 {
+    let h = 1.0 / panels as f64;
+    (0..panels).flat_map(|i| GAUSS.map(|(x, w)| (i as f64 * h + x * h, w * h))).map(|(x, w)| w * f(x)).sum()
+}

@@ -1,0 +1,317 @@
+use super::{
+    ShapeError, ShapeHit,
+    quadric::{ObjectRay, Placement, check_finite, integrate, roots},
+};
+use crate::{
+    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, interaction::weingarten,
+    sample::pdf_by_solid_angle,
+};
+use std::f32::consts::{PI, TAU};
+use tenfold_math::ops;
+use tenfold_math::{
+    Bounds3, Frame, Ray, Transform, Vec2, Vec3, gamma, offset_ray_origin, spherical_direction, sqr,
+};
+
+/// What a [`Sphere`] is made from; the default is the whole unit sphere.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct SphereParams {
+    /// The radius.
+    pub radius: f32,
+    /// The part below this z is cut off.
+    pub z_min: f32,
+    /// The part above this z is cut off.
+    pub z_max: f32,
+    /// The azimuth swept, in radians.
+    pub phi_max: f32,
+}
+
+impl SphereParams {
+    /// A whole sphere.
+    pub fn whole(radius: f32) -> Self {
+        Self { radius, z_min: -radius, z_max: radius, phi_max: TAU }
+    }
+}
+
+impl Default for SphereParams {
+    fn default() -> Self {
+        Self::whole(1.0)
+    }
+}
+
+/// A sphere around the origin of object space, or a part of it between two heights and up to an azimuth.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Sphere {
+    placement: Placement,
+    radius: f32,
+    z_min: f32,
+    z_max: f32,
+    theta_z_min: f32,
+    theta_z_max: f32,
+    phi_max: f32,
+    /// In the world.
+    area: f32,
+    /// World centre and radius of a whole sphere that is still round in the world.
+    round: Option<(Vec3, f32)>,
+}
+
+/// Below this sin² of the half angle (1.5°), 1 − cos θ is taken from its series.
+const SMALL_SIN2: f32 = 0.000_685_23;
+
+impl Sphere {
+    /// A sphere; `z_min` and `z_max` may be given in either order and are cut to the sphere.
+    ///
+    /// # Errors
+    /// Where a parameter is not finite or the radius is not positive.
+    pub fn new(
+        to_world: Transform,
+        reverse_orientation: bool,
+        params: SphereParams,
+    ) -> Result<Self, ShapeError> {
+        let SphereParams { radius, z_min, z_max, phi_max } = params;
+        check_finite(&[("radius", radius), ("zmin", z_min), ("zmax", z_max), ("phimax", phi_max)])?;
+        if radius <= 0.0 {
+            return Err(ShapeError::Parameter { parameter: "radius", value: radius });
+        }
+        let (z_min, z_max) =
+            (z_min.min(z_max).clamp(-radius, radius), z_min.max(z_max).clamp(-radius, radius));
+        let phi_max = phi_max.clamp(0.0, TAU);
+        let placement = Placement::new(to_world, reverse_orientation);
+        let whole = z_min == -radius && z_max == radius && phi_max == TAU;
+        let round =
+            placement.similarity.filter(|_| whole).map(|scale| (to_world.point(Vec3::ZERO), scale * radius));
+        let mut sphere = Self {
+            placement,
+            radius,
+            z_min,
+            z_max,
+            theta_z_min: ops::acos((z_min / radius).clamp(-1.0, 1.0)),
+            theta_z_max: ops::acos((z_max / radius).clamp(-1.0, 1.0)),
+            phi_max,
+            area: 0.0,
+            round,
+        };
+        sphere.area = sphere.world_area();
+        Ok(sphere)
+    }
+
+    /// Area in object space.
+    fn object_area(&self) -> f32 {
+        self.phi_max * self.radius * (self.z_max - self.z_min)
+    }
+
+    fn world_area(&self) -> f32 {
+        let scale = match self.placement.similarity {
+            Some(s) => f64::from(s * s),
+            None => integrate(32, |v| {
+                integrate(32, |u| {
+                    let p = self.object_point(Vec2::new(u as f32, v as f32));
+                    f64::from(self.placement.area_scale(p / self.radius))
+                })
+            }),
+        };
+        (f64::from(self.object_area()) * scale) as f32
+    }
+
+    /// A point of object space from two numbers in [0, 1], uniformly by area.
+    fn object_point(&self, u: Vec2) -> Vec3 {
+        let z = self.z_min + u.x * (self.z_max - self.z_min);
+        let r = (self.radius - z) * (self.radius + z);
+        let (sin, cos) = ops::sin_cos(u.y * self.phi_max);
+        let r = r.max(0.0).sqrt();
+        Vec3::new(r * cos, r * sin, z)
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        let r = self.radius;
+        let b = self
+            .placement
+            .to_world
+            .bounds(&Bounds3::new(Vec3::new(-r, -r, self.z_min), Vec3::new(r, r, self.z_max)));
+        if let Some((c, r)) = self.round {
+            // The box of a turned box is larger than that of the ball.
+            let ball = Bounds3::new(c - r, c + r).expanded(1e-5 * (r + c.abs().max_element()));
+            return Bounds3 { min: b.min.max(ball.min), max: b.max.min(ball.max) };
+        }
+        b
+    }
+
+    pub(super) fn normal_cone(&self) -> NormalCone {
+        NormalCone::EVERYWHERE
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Object-space point and azimuth at a ray parameter.
+    fn surface(&self, ray: &ObjectRay, t: f64) -> (Vec3, f32) {
+        let p = ray.at(t);
+        let r = f64::from(self.radius);
+        let mut p = (p * (r / p.length())).as_vec3();
+        if p.x == 0.0 && p.y == 0.0 {
+            p.x = 1e-5 * self.radius;
+        }
+        let phi = ops::atan2(p.y, p.x);
+        (p, if phi < 0.0 { phi + TAU } else { phi })
+    }
+
+    fn is_cut_away(&self, p: Vec3, phi: f32) -> bool {
+        (self.z_min > -self.radius && p.z < self.z_min)
+            || (self.z_max < self.radius && p.z > self.z_max)
+            || phi > self.phi_max
+    }
+
+    #[inline]
+    pub(super) fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        mut accept: impl FnMut(ShapeHit) -> bool,
+    ) -> Option<ShapeHit> {
+        let object = self.placement.ray(ray);
+        let roots = roots(object.o, object.d, object.o_error, f64::from(self.radius))?;
+        let whole = self.phi_max == TAU && self.z_min == -self.radius && self.z_max == self.radius;
+        for t in roots.t {
+            let hit = ShapeHit { t: t as f32, u: 0.0, v: 0.0 };
+            if t <= roots.t_error || !(hit.t < t_max) {
+                continue;
+            }
+            if !whole {
+                let (p, phi) = self.surface(&object, t);
+                if self.is_cut_away(p, phi) {
+                    continue;
+                }
+            }
+            if accept(hit) {
+                return Some(hit);
+            }
+        }
+        None
+    }
+
+    fn object_uv(&self, p: Vec3, phi: f32) -> Vec2 {
+        let theta = ops::acos((p.z / self.radius).clamp(-1.0, 1.0));
+        Vec2::new(phi / self.phi_max, (theta - self.theta_z_min) / (self.theta_z_max - self.theta_z_min))
+    }
+
+    pub(super) fn uv(&self, ray: &Ray, hit: &ShapeHit) -> Vec2 {
+        let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
+        self.object_uv(p, phi)
+    }
+
+    pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
+        let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
+        let uv = self.object_uv(p, phi);
+        let (phi_max, theta_range) = (self.phi_max, self.theta_z_max - self.theta_z_min);
+        let z_radius = (p.x * p.x + p.y * p.y).sqrt();
+        let (cos_phi, sin_phi) = (p.x / z_radius, p.y / z_radius);
+        let dpdu = Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0);
+        let dpdv = theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius);
+        let d2uu = -phi_max * phi_max * Vec3::new(p.x, p.y, 0.0);
+        let d2uv = theta_range * p.z * phi_max * Vec3::new(-sin_phi, cos_phi, 0.0);
+        let d2vv = -theta_range * theta_range * p;
+        let [dndu, dndv] = weingarten(dpdu, dpdv, d2uu, d2uv, d2vv);
+        let mut surface = SurfaceInteraction::new(
+            p,
+            gamma(5) * p.abs(),
+            uv,
+            Vec2::ZERO,
+            [dpdu, dpdv, dndu, dndv],
+            self.placement.flip,
+            ray,
+        );
+        // ∂p/∂u × ∂p/∂v points outward: its exact direction is known without cancellation.
+        let n = p / self.radius;
+        surface.n = if self.placement.flip { -n } else { n };
+        surface.shading.n = surface.n;
+        self.placement.place(&surface)
+    }
+
+    pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {
+        let p = self.object_point(Vec2::new(1.0 - u.x, u.y));
+        let scale = self.placement.area_scale(p / self.radius);
+        let phi = u.y * self.phi_max;
+        let pdf = 1.0 / (self.object_area() * scale);
+        pdf.is_finite().then(|| ShapeSample {
+            p: self.placement.to_world.point(p),
+            // Height and azimuth are exact here; the radius comes from a difference, a product and a root.
+            p_error: self.placement.to_world.point_error(p, Vec3::splat(gamma(8) * self.radius)),
+            n: self.placement.normal(p),
+            uv: self.object_uv(p, phi),
+            param: Vec2::ZERO,
+            pdf,
+        })
+    }
+
+    pub(super) fn pdf_area(&self, point: &SurfacePoint) -> f32 {
+        if self.placement.similarity.is_some() {
+            return 1.0 / self.area;
+        }
+        let p = self.placement.to_world.inverse().point(point.p).normalize_or(Vec3::Z);
+        1.0 / (self.object_area() * self.placement.area_scale(p))
+    }
+
+    /// sin² of the half angle of the cone that a round sphere fills, where `reference` is outside.
+    fn cone(&self, reference: &ReferencePoint) -> Option<Cone> {
+        let (centre, radius) = self.round?;
+        let origin = offset_ray_origin(reference.p, reference.p_error, reference.n, centre - reference.p);
+        if origin.distance_squared(centre) <= radius * radius {
+            return None;
+        }
+        let sin2 = radius * radius / reference.p.distance_squared(centre);
+        if !(sin2 < 1.0) {
+            return None;
+        }
+        let one_minus_cos = if sin2 < SMALL_SIN2 {
+            // 1 − √(1 − s) = s/2 + s²/8 + …
+            sin2 * (0.5 + 0.125 * sin2)
+        } else {
+            1.0 - (1.0 - sin2).sqrt()
+        };
+        Some(Cone { centre, radius, sin2, one_minus_cos })
+    }
+
+    pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
+        let Some(Cone { centre, radius, sin2, one_minus_cos }) = self.cone(reference) else {
+            return self.sample_area(u)?.by_solid_angle(reference);
+        };
+        let to_centre = centre - reference.p;
+        // q = 1 − cos θ of the direction, uniform in the cone; sin²θ = q·(2 − q).
+        let q = u.x * one_minus_cos;
+        let sin2_theta = q * (2.0 - q);
+        // The angle at the centre between the nearest point and the sampled one
+        // (pbrt book, 4th edition, eq. 6.14).
+        let sin_max = sin2.sqrt();
+        let cos_alpha = sin2_theta / sin_max + (1.0 - q) * (1.0 - sin2_theta / sin2).max(0.0).sqrt();
+        let sin_alpha = (1.0 - sqr(cos_alpha)).max(0.0).sqrt();
+        let w = spherical_direction(sin_alpha, cos_alpha.min(1.0), u.y * TAU);
+        let outward = -Frame::from_z(to_centre.normalize()).to_world(w);
+        let p = centre + radius * outward;
+        let object = self.placement.to_world.inverse().point(p);
+        let phi = ops::atan2(object.y, object.x);
+        let object = object * (self.radius / object.length());
+        Some(ShapeSample {
+            p,
+            p_error: gamma(4) * centre.abs() + Vec3::splat(gamma(12) * radius),
+            n: if self.placement.flip { -outward } else { outward },
+            uv: self.object_uv(object, if phi < 0.0 { phi + TAU } else { phi }),
+            param: Vec2::ZERO,
+            pdf: 1.0 / (2.0 * PI * one_minus_cos),
+        })
+    }
+
+    pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        match self.cone(reference) {
+            Some(cone) => 1.0 / (2.0 * PI * cone.one_minus_cos),
+            None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
+        }
+    }
+}
+
+/// A round sphere seen from outside.
+struct Cone {
+    centre: Vec3,
+    radius: f32,
+    sin2: f32,
+    one_minus_cos: f32,
+}

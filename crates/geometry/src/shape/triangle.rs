@@ -1,0 +1,312 @@
+use super::ShapeHit;
+use crate::{
+    NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
+    mesh::is_degenerate,
+    sample::{cosine_weights, pdf_by_solid_angle},
+};
+use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma};
+use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
+
+/// Solid angles outside this range are sampled by area: directions to smaller triangles lose their digits, and
+/// larger ones nearly fill the hemisphere, where sampling the scattering is better (pbrt's bounds).
+const SPHERICAL_RANGE: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
+
+/// A triangle of a mesh.
+#[derive(Copy, Clone, Debug)]
+pub struct Triangle<'a> {
+    mesh: &'a TriangleMesh,
+    index: usize,
+}
+
+impl<'a> Triangle<'a> {
+    pub(super) fn new(mesh: &'a TriangleMesh, index: usize) -> Self {
+        Self { mesh, index }
+    }
+
+    /// Vertex positions.
+    #[inline]
+    pub fn positions(&self) -> [Vec3; 3] {
+        self.mesh.positions(self.index)
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        Bounds3::around(self.positions())
+    }
+
+    /// Unit normal by the order of the vertices; zero without area.
+    fn vertex_order_normal(&self) -> Vec3 {
+        let [a, b, c] = self.positions();
+        // Double precision: the cross product of tiny edges must not underflow.
+        (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3()
+    }
+
+    /// The geometric normal at barycentric weights `b`.
+    fn normal(&self, b: [f32; 3]) -> Vec3 {
+        let n = self.vertex_order_normal();
+        match self.mesh.normals(self.index) {
+            Some(normals) if n.dot(mix(b, normals)) < 0.0 => -n,
+            Some(_) => n,
+            None if self.mesh.flip => -n,
+            None => n,
+        }
+    }
+
+    pub(super) fn normal_cone(&self) -> NormalCone {
+        let n = self.normal([1.0 / 3.0; 3]);
+        // Interpolated normals on both sides of the plane turn the geometric one around within the triangle.
+        let turns =
+            self.mesh.normals(self.index).is_some_and(|normals| normals.iter().any(|ns| n.dot(*ns) < 0.0));
+        if n == Vec3::ZERO || turns { NormalCone::EVERYWHERE } else { NormalCone::along(n) }
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        let [a, b, c] = self.positions();
+        (0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length()) as f32
+    }
+
+    #[inline]
+    pub(super) fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        mut accept: impl FnMut(ShapeHit) -> bool,
+    ) -> Option<ShapeHit> {
+        let p = self.positions();
+        if is_degenerate(p) {
+            return None;
+        }
+        RayShear::new(ray).intersect(p, t_max).filter(|hit| accept(*hit))
+    }
+
+    pub(super) fn uv(&self, _: &Ray, hit: &ShapeHit) -> Vec2 {
+        mix(weights(hit.u, hit.v), self.mesh.uvs(self.index))
+    }
+
+    pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
+        let [p0, p1, p2] = self.positions();
+        let b = weights(hit.u, hit.v);
+        let uv = self.mesh.uvs(self.index);
+        let (duv02, duv12) = (uv[0] - uv[2], uv[1] - uv[2]);
+        let (dp02, dp12) = (p0 - p2, p1 - p2);
+        let determinant = duv02.perp_dot(duv12);
+        let degenerate_uv = determinant.abs() < 1e-9;
+        let by_uv = |d02: Vec3, d12: Vec3| {
+            let s = 1.0 / determinant;
+            [(d02 * duv12.y - d12 * duv02.y) * s, (d12 * duv02.x - d02 * duv12.x) * s]
+        };
+        let n = self.vertex_order_normal();
+        let [mut dpdu, mut dpdv] = if degenerate_uv { [Vec3::ZERO; 2] } else { by_uv(dp02, dp12) };
+        if dpdu.cross(dpdv).length_squared() == 0.0 {
+            // Any tangents; turned as pbrt's, whose normal here is against the order of the vertices.
+            let frame = Frame::from_z(-n);
+            (dpdu, dpdv) = (frame.x, frame.y);
+        }
+        let p_error = gamma(7) * mix(b.map(f32::abs), [p0.abs(), p1.abs(), p2.abs()]);
+        let mut surface = SurfaceInteraction::new(
+            mix(b, [p0, p1, p2]),
+            p_error,
+            mix(b, uv),
+            Vec2::new(hit.u, hit.v),
+            [dpdu, dpdv, Vec3::ZERO, Vec3::ZERO],
+            false,
+            ray,
+        );
+        surface.n = if self.mesh.flip { -n } else { n };
+        surface.shading.n = surface.n;
+        surface.face_index = self.mesh.face_index(self.index);
+
+        let (normals, tangents) = (self.mesh.normals(self.index), self.mesh.tangents(self.index));
+        if normals.is_none() && tangents.is_none() {
+            return surface;
+        }
+        let ns = normals.map_or(surface.n, |n| mix(b, n).normalize_or(surface.n));
+        let tangent = tangents.map_or(dpdu, |s| {
+            let s = mix(b, s);
+            if s.length_squared() == 0.0 { dpdu } else { s }
+        });
+        let ts = ns.cross(tangent);
+        let (ss, ts) = if ts.length_squared() > 0.0 {
+            (ts.cross(ns), ts)
+        } else {
+            let frame = Frame::from_z(ns);
+            (frame.x, frame.y)
+        };
+        let [dndu, dndv] = match normals {
+            Some([n0, n1, n2]) if !degenerate_uv => by_uv(n0 - n2, n1 - n2),
+            // The same arbitrary tangents as of the position.
+            Some([n0, n1, n2]) => match (n2 - n0).cross(n1 - n0).try_normalize() {
+                Some(dn) => {
+                    let frame = Frame::from_z(dn);
+                    [frame.x, frame.y]
+                }
+                None => [Vec3::ZERO; 2],
+            },
+            None => [Vec3::ZERO; 2],
+        };
+        if surface.n.dot(ns) < 0.0 {
+            surface.n = -surface.n;
+        }
+        surface.shading = Shading { n: ns, dpdu: ss, dpdv: ts, dndu, dndv };
+        surface
+    }
+
+    fn point(&self, b: [f32; 3], pdf: f32) -> ShapeSample {
+        let p = self.positions();
+        ShapeSample {
+            p: mix(b, p),
+            p_error: gamma(7) * mix(b.map(f32::abs), p.map(Vec3::abs)),
+            n: self.normal(b),
+            uv: mix(b, self.mesh.uvs(self.index)),
+            param: Vec2::new(b[1], b[2]),
+            pdf,
+        }
+    }
+
+    pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {
+        let pdf = 1.0 / self.area();
+        pdf.is_finite().then(|| self.point(sample_uniform_triangle(u).to_array(), pdf))
+    }
+
+    pub(super) fn pdf_area(&self, _: &SurfacePoint) -> f32 {
+        1.0 / self.area()
+    }
+
+    fn seen_from(&self, reference: &ReferencePoint) -> Option<SphericalTriangle> {
+        SphericalTriangle::new(reference.p, self.positions())
+            .filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()))
+    }
+
+    pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
+        let Some(triangle) = self.seen_from(reference) else {
+            return self.sample_area(u)?.by_solid_angle(reference);
+        };
+        if reference.ns == Vec3::ZERO {
+            let sample = triangle.sample(u)?;
+            return Some(self.point(sample.barycentric.to_array(), sample.pdf));
+        }
+        let corners = self.corner_weights(reference);
+        let u = sample_bilinear(u, corners);
+        let sample = triangle.sample(u)?;
+        Some(self.point(sample.barycentric.to_array(), sample.pdf * bilinear_pdf(u, corners)))
+    }
+
+    pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        let to_light = point.p - reference.p;
+        let Some(triangle) = self.seen_from(reference) else {
+            return pdf_by_solid_angle(self.pdf_area(point), to_light, point.n);
+        };
+        if reference.ns == Vec3::ZERO {
+            return triangle.pdf();
+        }
+        let u = triangle.invert(to_light.normalize_or(Vec3::Z));
+        triangle.pdf() * bilinear_pdf(u, self.corner_weights(reference))
+    }
+
+    /// Weights of the corners of the unit square that [`SphericalTriangle`] maps to: its lower edge is the second vertex.
+    fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
+        let [a, b, c] = self.positions().map(|p| (p - reference.p).normalize_or_zero());
+        cosine_weights(reference.ns, [b, b, a, c])
+    }
+}
+
+/// Barycentric weights from the second and third.
+fn weights(b1: f32, b2: f32) -> [f32; 3] {
+    [1.0 - b1 - b2, b1, b2]
+}
+
+/// A weighted sum.
+fn mix<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>(b: [f32; 3], [x, y, z]: [T; 3]) -> T {
+    x * b[0] + y * b[1] + z * b[2]
+}
+
+/// A ray turned into the space where it runs along z through the origin: what the watertight test of Woop, Benthin
+/// and Wald (2013) wants.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct RayShear {
+    pub(crate) origin: Vec3,
+    /// The axes that become x, y and z; z is the one along which the ray runs fastest.
+    pub(crate) axes: [usize; 3],
+    /// Shear of x and y by z, and scale of z.
+    pub(crate) shear: Vec3,
+}
+
+impl RayShear {
+    #[inline]
+    pub(crate) fn new(ray: &Ray) -> Self {
+        let d = ray.direction.abs();
+        let kz = if d.x > d.y && d.x > d.z {
+            0
+        } else if d.y > d.z {
+            1
+        } else {
+            2
+        };
+        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+        let d = ray.direction;
+        let shear = Vec3::new(-d[kx] / d[kz], -d[ky] / d[kz], 1.0 / d[kz]);
+        Self { origin: ray.origin, axes: [kx, ky, kz], shear }
+    }
+
+    /// The triangle `p` against the ray. The vectorised test of the hierarchy does the same operations in the same order.
+    ///
+    /// Edge functions are differences of two rounded products. Rounding is monotonic, so their sign is right or
+    /// zero; zero counts as inside for both neighbours of an edge: nothing leaks.
+    pub(crate) fn intersect(&self, p: [Vec3; 3], t_max: f32) -> Option<ShapeHit> {
+        let [kx, ky, kz] = self.axes;
+        let s = self.shear;
+        let v = p.map(|p| {
+            let p = p - self.origin;
+            Vec3::new(p[kx] + s.x * p[kz], p[ky] + s.y * p[kz], p[kz])
+        });
+        let edge = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
+        let mut e = [edge(v[1], v[2]), edge(v[2], v[0]), edge(v[0], v[1])];
+        let outside = |e: &[f32; 3]| e.iter().any(|&e| e < 0.0) && e.iter().any(|&e| e > 0.0);
+        if outside(&e) {
+            return None;
+        }
+        let mut det = (e[0] + e[1]) + e[2];
+        if det == 0.0 {
+            e = exact_edges(v);
+            det = (e[0] + e[1]) + e[2];
+            if outside(&e) || det == 0.0 {
+                return None;
+            }
+        }
+        let z = v.map(|v| v.z * s.z);
+        let inv_det = 1.0 / det;
+        let t = ((e[0] * z[0] + e[1] * z[1]) + e[2] * z[2]) * inv_det;
+        (is_in_front(t, v, z, inv_det) && t < t_max).then(|| ShapeHit {
+            t,
+            u: e[1] * inv_det,
+            v: e[2] * inv_det,
+        })
+    }
+}
+
+/// Edge functions from exact products.
+pub(crate) fn exact_edges(v: [Vec3; 3]) -> [f32; 3] {
+    let edge = |a: Vec3, b: Vec3| (f64::from(a.x) * f64::from(b.y) - f64::from(a.y) * f64::from(b.x)) as f32;
+    [edge(v[1], v[2]), edge(v[2], v[0]), edge(v[0], v[1])]
+}
+
+/// Whether `t`, the mean of the vertices' ray parameters `z` weighted by the edge functions, is safely above 0.
+///
+/// It is where all vertices are in front, however thin the triangle looks: then no error of the weights can bring the mean
+/// behind. Otherwise it must exceed its error, in the way of the pbrt book, 4th edition, §6.8.7: the weights shift the
+/// mean by 3·δe/det of the range of `z`.
+fn is_in_front(t: f32, v: [Vec3; 3], z: [f32; 3], inv_det: f32) -> bool {
+    let max = |a: f32, b: f32, c: f32| a.abs().max(b.abs()).max(c.abs());
+    let delta_t = gamma(8) * max(z[0], z[1], z[2]);
+    let nearest = z[0].min(z[1].min(z[2]));
+    if nearest > delta_t {
+        return true;
+    }
+    let max_x = max(v[0].x, v[1].x, v[2].x);
+    let max_y = max(v[0].y, v[1].y, v[2].y);
+    let max_z = max(v[0].z, v[1].z, v[2].z);
+    let delta_x = gamma(5) * (max_x + max_z);
+    let delta_y = gamma(5) * (max_y + max_z);
+    let delta_e = 2.0 * ((gamma(2) * max_x * max_y + delta_y * max_x) + delta_x * max_y);
+    let range = z[0].max(z[1].max(z[2])) - nearest;
+    t > delta_t + 3.0 * delta_e * range * inv_det.abs()
+}

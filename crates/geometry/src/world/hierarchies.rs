@@ -1,0 +1,176 @@
+//! The two levels: one hierarchy over the world, one for each group and for each moving geometry.
+
+use super::{Geometry, WorldDesc, WorldError, WorldStats};
+use crate::{
+    Shape,
+    bvh::{Bvh, LeafPrimitive, Parts},
+    mesh::is_degenerate,
+};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use tenfold_math::{Bounds3, Motion, Transform, Vec3};
+
+/// What is known of a placement's transform.
+#[derive(Debug)]
+enum Path {
+    Still(Transform),
+    /// The motion of an instance after the own one of a geometry, if it has one.
+    Moving(Box<(Motion, Option<Motion>)>),
+}
+
+/// A hierarchy placed in the world.
+#[derive(Debug)]
+pub(super) struct Placement {
+    /// Of [`Hierarchies::lower`].
+    pub(super) hierarchy: u32,
+    path: Path,
+}
+
+impl Placement {
+    fn new(hierarchy: u32, outer: &Motion, inner: Option<&Motion>) -> Self {
+        let path = match inner {
+            _ if outer.is_moving() || inner.is_some_and(Motion::is_moving) => {
+                Path::Moving(Box::new((outer.clone(), inner.cloned())))
+            }
+            None => Path::Still(*outer.start()),
+            Some(inner) => Path::Still(*outer.start() * *inner.start()),
+        };
+        Self { hierarchy, path }
+    }
+
+    /// Local to world at a time.
+    #[inline]
+    pub(super) fn at(&self, time: f32) -> Transform {
+        match &self.path {
+            Path::Still(transform) => *transform,
+            Path::Moving(path) => match &**path {
+                (outer, None) => outer.at(time),
+                (outer, Some(inner)) => outer.at(time) * inner.at(time),
+            },
+        }
+    }
+
+    fn bounds(&self, local: &Bounds3, [from, to]: [f32; 2]) -> Bounds3 {
+        let (swept, rounding) = match &self.path {
+            Path::Still(t) => (t.bounds(local), rounding(t, local)),
+            Path::Moving(path) => {
+                let (outer, inner) = &**path;
+                let local = inner.as_ref().map_or(*local, |inner| inner.bounds(local, from, to));
+                let swept = outer.bounds(&local, from, to);
+                (swept, rounding(&outer.at(from), &local).max(rounding(&outer.at(to), &local)))
+            }
+        };
+        swept.expanded(rounding)
+    }
+}
+
+/// Bound on the error of mapping any point of a box.
+fn rounding(t: &Transform, b: &Bounds3) -> f32 {
+    (0..8).map(|i| t.point_error(b.corner(i), Vec3::ZERO).max_element()).fold(0.0, f32::max)
+}
+
+/// Both levels.
+#[derive(Debug)]
+pub(super) struct Hierarchies {
+    pub(super) top: Bvh,
+    pub(super) lower: Vec<Bvh>,
+    pub(super) placements: Vec<Placement>,
+}
+
+impl Hierarchies {
+    pub(super) fn build(desc: &WorldDesc) -> Result<(Self, WorldStats), WorldError> {
+        let check = |what, count: usize| {
+            if count < (1 << 30) - 1 { Ok(()) } else { Err(WorldError::TooLarge { what, count }) }
+        };
+        check("geometries", desc.geometries.len())?;
+        check("primitives", desc.geometries.iter().map(|g| g.shape.len()).sum())?;
+
+        // Lower hierarchies: for each group its still geometries, and each moving geometry on its own.
+        let mut members: Vec<Vec<usize>> = Vec::new();
+        let mut by_group: BTreeMap<usize, Vec<(u32, Option<&Motion>)>> = BTreeMap::new();
+        let mut moving: Vec<(u32, &Motion)> = Vec::new();
+        let mut still_of_group: BTreeMap<usize, u32> = BTreeMap::new();
+        let mut top_members = Vec::new();
+        for (i, geometry) in desc.geometries.iter().enumerate() {
+            match (&geometry.motion, geometry.group) {
+                (None, None) => top_members.push(i),
+                (None, Some(group)) => {
+                    let hierarchy = *still_of_group.entry(group.index()).or_insert_with(|| {
+                        members.push(Vec::new());
+                        let hierarchy = members.len() as u32 - 1;
+                        by_group.entry(group.index()).or_default().push((hierarchy, None));
+                        hierarchy
+                    });
+                    members[hierarchy as usize].push(i);
+                }
+                (Some(motion), group) => {
+                    members.push(vec![i]);
+                    let hierarchy = members.len() as u32 - 1;
+                    match group {
+                        None => moving.push((hierarchy, motion)),
+                        Some(group) => {
+                            by_group.entry(group.index()).or_default().push((hierarchy, Some(motion)))
+                        }
+                    }
+                }
+            }
+        }
+        let built: Vec<(Bvh, usize)> =
+            members.par_iter().map(|members| build_still(&desc.geometries, members, Vec::new())).collect();
+
+        let mut placements = Vec::new();
+        for (hierarchy, motion) in moving {
+            placements.push(Placement::new(hierarchy, motion, None));
+        }
+        for instance in &desc.instances {
+            for (hierarchy, inner) in by_group.get(&instance.group.index()).into_iter().flatten() {
+                placements.push(Placement::new(*hierarchy, &instance.motion, *inner));
+            }
+        }
+        check("instances", placements.len())?;
+        let boxes: Vec<(Bounds3, u32)> = placements
+            .par_iter()
+            .enumerate()
+            .map(|(i, p)| (p.bounds(&built[p.hierarchy as usize].0.bounds(), desc.shutter), i as u32))
+            .filter(|(b, _)| !b.is_empty())
+            .collect();
+        let (top, mut degenerate) = build_still(&desc.geometries, &top_members, boxes);
+        degenerate += built.iter().map(|(_, degenerate)| degenerate).sum::<usize>();
+        let lower: Vec<Bvh> = built.into_iter().map(|(bvh, _)| bvh).collect();
+        let all = || lower.iter().chain([&top]);
+        let stats = WorldStats {
+            primitives: desc.geometries.iter().map(|g| g.shape.len()).sum::<usize>() - degenerate,
+            degenerate,
+            instances: placements.len(),
+            nodes: all().map(Bvh::node_count).sum(),
+            bytes: all().map(Bvh::bytes).sum(),
+        };
+        Ok((Self { top, lower, placements }, stats))
+    }
+}
+
+/// A hierarchy over some geometries as they are, and placements; also counts the degenerate triangles left out.
+fn build_still(geometries: &[Geometry], members: &[usize], placements: Vec<(Bounds3, u32)>) -> (Bvh, usize) {
+    let mut parts = Parts { placements, ..Parts::default() };
+    let mut degenerate = 0;
+    for &i in members {
+        let Geometry { shape, masked, .. } = &geometries[i];
+        let id = |index: usize| LeafPrimitive::new(i as u32, index as u32, *masked);
+        match shape {
+            Shape::Triangles(mesh) => {
+                parts.triangles.reserve(mesh.len());
+                for index in 0..mesh.len() {
+                    let positions = mesh.positions(index);
+                    if is_degenerate(positions) {
+                        degenerate += 1;
+                    } else {
+                        parts.triangles.push((positions, id(index)));
+                    }
+                }
+            }
+            // Triangles alone have leaves of their own kind.
+            _ => parts.shapes.extend((0..shape.len()).map(|i| (shape.primitive(i).bounds(), id(i)))),
+        }
+    }
+    (Bvh::build(parts), degenerate)
+}

@@ -1,0 +1,195 @@
+//! Everything that rays can hit, immutable once built.
+
+mod hierarchies;
+mod search;
+
+use crate::{
+    Candidate, Hit, InstanceId, Primitive, PrimitiveId, Shape, ShapeHit, SurfaceInteraction, bvh::Level,
+};
+use hierarchies::Hierarchies;
+use search::{Search, State};
+use tenfold_math::{Bounds3, Id, Motion, Ray, Transform, Vec2, Vec3};
+
+/// A shape in a world: what [`PrimitiveId::geometry`] names.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// The shape, in world space; in that of its group where it has one; before its motion where it moves.
+    pub shape: Shape,
+    /// How it moves, if it does.
+    pub motion: Option<Motion>,
+    /// The group it belongs to; `None` for the world itself. Geometries of groups are seen only through instances.
+    pub group: Option<Id<Group>>,
+    /// Whatever the renderer wants to find again.
+    pub user: u32,
+    /// Whether rays ask their filter before they hit it (for masks of opacity).
+    pub masked: bool,
+}
+
+/// Names a set of geometries that instances place together.
+#[derive(Copy, Clone, Debug)]
+pub struct Group;
+
+/// A placement of a group in the world.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// What is placed.
+    pub group: Id<Group>,
+    /// Where, and how it moves.
+    pub motion: Motion,
+}
+
+/// What a [`World`] is built from.
+#[derive(Clone, Debug, Default)]
+pub struct WorldDesc {
+    /// The geometries: [`PrimitiveId::geometry`] counts in this order.
+    pub geometries: Vec<Geometry>,
+    /// The instances.
+    pub instances: Vec<Instance>,
+    /// First and last time of any ray.
+    pub shutter: [f32; 2],
+}
+
+/// Why a world cannot be built.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WorldError {
+    /// There are more primitives or instances than indices.
+    #[error("{count} {what} are too many")]
+    TooLarge {
+        /// Of what there are too many.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// What was built, in numbers.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct WorldStats {
+    /// Primitives in the hierarchies; those of a group count once.
+    pub primitives: usize,
+    /// Triangles without area, which no ray can hit: left out.
+    pub degenerate: usize,
+    /// Placements of groups and of moving geometries.
+    pub instances: usize,
+    /// Nodes of all hierarchies.
+    pub nodes: usize,
+    /// Memory of all hierarchies in bytes, without the meshes.
+    pub bytes: usize,
+}
+
+/// Everything that rays can hit.
+#[derive(Debug)]
+pub struct World {
+    geometries: Vec<Geometry>,
+    hierarchies: Hierarchies,
+    level: Level,
+    bounds: Bounds3,
+    stats: WorldStats,
+}
+
+impl World {
+    /// Builds the hierarchies. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// Where there is more than 30-bit indices can name.
+    pub fn build(desc: WorldDesc) -> Result<Self, WorldError> {
+        let (hierarchies, stats) = Hierarchies::build(&desc)?;
+        let bounds = hierarchies.top.bounds();
+        Ok(Self { geometries: desc.geometries, hierarchies, level: Level::detect(), bounds, stats })
+    }
+
+    /// The same world without vector instructions: it answers with the same bits.
+    #[must_use]
+    pub fn portable(mut self) -> Self {
+        self.level = Level::Portable;
+        self
+    }
+
+    /// A box around everything at all times of the shutter.
+    pub fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+
+    /// What was built, in numbers.
+    pub fn stats(&self) -> &WorldStats {
+        &self.stats
+    }
+
+    /// A geometry.
+    pub fn geometry(&self, id: Id<Geometry>) -> &Geometry {
+        &self.geometries[id.index()]
+    }
+
+    /// A primitive, in the space of its shape.
+    pub fn primitive(&self, id: PrimitiveId) -> Primitive<'_> {
+        self.geometries[id.geometry.index()].shape.primitive(id.index as usize)
+    }
+
+    /// The closest hit with `0 < t < t_max`, of those that `filter` accepts. The filter is asked about masked
+    /// geometries only, and not only about the closest hits.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_max: f32, filter: impl Fn(&Candidate<'_>) -> bool) -> Option<Hit> {
+        self.query::<false>(ray, t_max, filter)
+    }
+
+    /// Whether there is any hit with `0 < t < t_max` that `filter` accepts.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray, t_max: f32, filter: impl Fn(&Candidate<'_>) -> bool) -> bool {
+        self.query::<true>(ray, t_max, filter).is_some()
+    }
+
+    fn query<const ANY: bool>(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        filter: impl Fn(&Candidate<'_>) -> bool,
+    ) -> Option<Hit> {
+        // Rays that lead nowhere would visit everything in vain.
+        if !ray.origin.is_finite() || !ray.direction.is_finite() || ray.direction == Vec3::ZERO {
+            return None;
+        }
+        let state = State { best: None, t_max };
+        let mut search = Search::<ANY, true, _> {
+            world: self,
+            ray,
+            local: *ray,
+            instance: InstanceId::NONE,
+            filter: &filter,
+            state,
+        };
+        self.hierarchies.top.traverse(self.level, ray, &mut search);
+        search.state.best
+    }
+
+    fn to_local(&self, instance: InstanceId, ray: &Ray) -> Ray {
+        match self.placement_at(instance, ray.time) {
+            Some(t) => t.inverse().ray(ray),
+            None => *ray,
+        }
+    }
+
+    /// The transform of an instance at a time; `None` for the world itself.
+    pub fn placement_at(&self, instance: InstanceId, time: f32) -> Option<Transform> {
+        instance.is_some().then(|| self.hierarchies.placements[instance.0 as usize].at(time))
+    }
+
+    /// The surface at a hit of `ray`, in world space.
+    pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
+        let shape_hit = ShapeHit { t: hit.t, u: hit.u, v: hit.v };
+        let primitive = self.primitive(hit.primitive);
+        let surface = match self.placement_at(hit.instance, ray.time) {
+            None => primitive.interaction(ray, &shape_hit),
+            Some(t) => {
+                let local = primitive.interaction(&t.inverse().ray(ray), &shape_hit);
+                SurfaceInteraction { wo: -ray.direction.normalize(), ..local.transformed(&t) }
+            }
+        };
+        surface.of(hit)
+    }
+
+    /// Texture coordinates at a hit of `ray`.
+    pub fn uv(&self, ray: &Ray, hit: &Hit) -> Vec2 {
+        let shape_hit = ShapeHit { t: hit.t, u: hit.u, v: hit.v };
+        self.primitive(hit.primitive).uv(&self.to_local(hit.instance, ray), &shape_hit)
+    }
+}

@@ -1,0 +1,99 @@
+//! What happens where a ray comes to a leaf.
+
+use super::World;
+use crate::{
+    Candidate, Hit, InstanceId, PrimitiveId, ShapeHit,
+    bvh::{LeafPrimitive, Visitor},
+};
+use tenfold_math::{Id, Ray};
+
+/// What was found so far.
+#[derive(Copy, Clone)]
+pub(super) struct State {
+    pub(super) best: Option<Hit>,
+    pub(super) t_max: f32,
+}
+
+/// A ray on its way through one hierarchy: through the world's (`TOP`) or one of those below it.
+pub(super) struct Search<'a, const ANY: bool, const TOP: bool, F> {
+    pub(super) world: &'a World,
+    /// As the caller gave it.
+    pub(super) ray: &'a Ray,
+    /// In the space of this hierarchy.
+    pub(super) local: Ray,
+    pub(super) instance: InstanceId,
+    pub(super) filter: &'a F,
+    pub(super) state: State,
+}
+
+impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Search<'_, ANY, TOP, F> {
+    #[inline(always)]
+    fn hit(&self, id: LeafPrimitive, hit: ShapeHit) -> Hit {
+        let primitive = PrimitiveId { geometry: Id::new(id.geometry()), index: id.index };
+        Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: self.instance }
+    }
+
+    #[inline(always)]
+    fn accepts(&self, id: LeafPrimitive, hit: ShapeHit) -> bool {
+        !id.is_masked() || {
+            let user = self.world.geometries[id.geometry()].user;
+            (self.filter)(&Candidate { world: self.world, ray: self.ray, hit: self.hit(id, hit), user })
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, id: LeafPrimitive, hit: ShapeHit) {
+        self.state = State { best: Some(self.hit(id, hit)), t_max: hit.t };
+    }
+}
+
+impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor for Search<'_, ANY, TOP, F> {
+    const ANY: bool = ANY;
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.state.t_max
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, id: LeafPrimitive, hit: ShapeHit) -> bool {
+        if !self.accepts(id, hit) {
+            return false;
+        }
+        self.take(id, hit);
+        ANY
+    }
+
+    fn shape(&mut self, id: LeafPrimitive) -> bool {
+        let primitive = self.world.geometries[id.geometry()].shape.primitive(id.index as usize);
+        let found = primitive.intersect(&self.local, self.state.t_max, |hit| self.accepts(id, hit));
+        match found {
+            Some(hit) => {
+                self.take(id, hit);
+                ANY
+            }
+            None => false,
+        }
+    }
+
+    fn placement(&mut self, index: usize) -> bool {
+        if !TOP {
+            return false;
+        }
+        let hierarchies = &self.world.hierarchies;
+        let placement = &hierarchies.placements[index];
+        let local = placement.at(self.ray.time).inverse().ray(self.ray);
+        let mut below = Search::<ANY, false, F> {
+            world: self.world,
+            ray: self.ray,
+            local,
+            instance: InstanceId(index as u32),
+            filter: self.filter,
+            state: self.state,
+        };
+        let hierarchy = &hierarchies.lower[placement.hierarchy as usize];
+        let over = hierarchy.traverse(self.world.level, &local, &mut below);
+        self.state = below.state;
+        over
+    }
+}
