@@ -1,0 +1,138 @@
+use flate2::read::MultiGzDecoder;
+use std::{
+    io::{self, Read},
+    path::{Path, PathBuf},
+};
+
+/// Where the files that a scene names come from: the file system, or what a program carries along.
+pub trait Resources {
+    /// The bytes of a file, as they are stored (see [`unpack`]).
+    ///
+    /// # Errors
+    /// Where the file is missing or cannot be read.
+    fn load(&self, path: &str) -> io::Result<Vec<u8>>;
+
+    /// The place that a name in a scene stands for, for messages.
+    fn resolve(&self, path: &str) -> PathBuf;
+
+    /// A name that all names of one file share.
+    fn identity(&self, path: &str) -> PathBuf {
+        self.resolve(path)
+    }
+}
+
+/// Files on disk. Like pbrt, names are relative to the directory of the scene file (not of the included file that
+/// says the name), or else to the current directory.
+#[derive(Clone, Debug)]
+pub struct FileResources {
+    root: PathBuf,
+}
+
+impl FileResources {
+    /// The files beside a scene file.
+    pub fn beside(scene: &Path) -> Self {
+        Self { root: scene.parent().map(Path::to_path_buf).unwrap_or_default() }
+    }
+
+    /// The files below a directory.
+    pub fn below(root: impl Into<PathBuf>) -> Self {
+        Self { root: root.into() }
+    }
+}
+
+impl Resources for FileResources {
+    fn load(&self, path: &str) -> io::Result<Vec<u8>> {
+        read_file(&self.resolve(path))
+    }
+
+    fn resolve(&self, path: &str) -> PathBuf {
+        let beside = self.root.join(path);
+        if beside.exists() || !Path::new(path).exists() { beside } else { PathBuf::from(path) }
+    }
+
+    fn identity(&self, path: &str) -> PathBuf {
+        let resolved = self.resolve(path);
+        resolved.canonicalize().unwrap_or(resolved)
+    }
+}
+
+/// Reads a regular file: devices and pipes may never end.
+pub(crate) fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("not a regular file"));
+    }
+    std::fs::read(path)
+}
+
+/// Files that the program carries along, by name.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct EmbeddedResources {
+    files: &'static [(&'static str, &'static [u8])],
+}
+
+impl EmbeddedResources {
+    /// The files of a table of names and bytes.
+    pub const fn new(files: &'static [(&'static str, &'static [u8])]) -> Self {
+        Self { files }
+    }
+}
+
+impl Resources for EmbeddedResources {
+    fn load(&self, path: &str) -> io::Result<Vec<u8>> {
+        let found = self.files.iter().find(|(name, _)| *name == path);
+        found.map(|(_, bytes)| bytes.to_vec()).ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
+    fn resolve(&self, path: &str) -> PathBuf {
+        PathBuf::from(path)
+    }
+}
+
+/// The content of a file that may be packed by gzip; whether it is, its first bytes tell.
+///
+/// # Errors
+/// Where the packed data are damaged or unpack to more than `limit` bytes.
+pub fn unpack(bytes: Vec<u8>, limit: u64) -> io::Result<Vec<u8>> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes);
+    }
+    let mut unpacked = Vec::new();
+    MultiGzDecoder::new(&bytes[..]).take(limit + 1).read_to_end(&mut unpacked)?;
+    if unpacked.len() as u64 > limit {
+        return Err(io::Error::other(format!("unpacks to more than {limit} bytes")));
+    }
+    Ok(unpacked)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn packed(bytes: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn gzip_is_known_by_its_first_bytes() {
+        assert_eq!(unpack(packed(b"hello"), 10).unwrap(), b"hello");
+        assert_eq!(unpack(b"hello".to_vec(), 10).unwrap(), b"hello");
+    }
+
+    #[test]
+    fn bombs_and_damage_are_refused() {
+        assert!(unpack(packed(&[0; 100_000]), 99_999).is_err());
+        let mut damaged = packed(b"hello");
+        damaged.truncate(12);
+        assert!(unpack(damaged, 10).is_err());
+    }
+
+    #[test]
+    fn embedded_files_are_found_by_name() {
+        let files = EmbeddedResources::new(&[("a.png", b"x")]);
+        assert_eq!(files.load("a.png").unwrap(), b"x");
+        assert_eq!(files.load("b.png").unwrap_err().kind(), io::ErrorKind::NotFound);
+    }
+}
