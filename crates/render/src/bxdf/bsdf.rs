@@ -1,0 +1,85 @@
+use tenfold_math::{Frame, Vec2, Vec3};
+use tenfold_spectrum::SampledSpectrum;
+
+use super::Bxdf;
+use super::record::{BsdfSample, Lobe};
+
+/// A [`Bxdf`] at a point of a surface: the same methods on directions in the world.
+#[derive(Copy, Clone, Debug)]
+pub struct Bsdf<'a> {
+    frame: Frame,
+    bxdf: Bxdf<'a>,
+}
+
+impl<'a> Bsdf<'a> {
+    /// Puts `bxdf` in the shading frame `frame`, whose z is the shading normal.
+    #[inline]
+    pub fn new(frame: Frame, bxdf: Bxdf<'a>) -> Self {
+        Self { frame, bxdf }
+    }
+
+    /// The shading frame.
+    #[inline]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The scattering function in the local frame.
+    #[inline]
+    pub fn bxdf(&self) -> &Bxdf<'a> {
+        &self.bxdf
+    }
+
+    /// What it can do.
+    #[inline]
+    pub fn lobes(&self) -> Lobe {
+        self.bxdf.lobes()
+    }
+
+    /// As [`Bxdf::is_dispersive`].
+    #[inline]
+    pub fn is_dispersive(&self) -> bool {
+        self.bxdf.is_dispersive()
+    }
+
+    /// As [`Bxdf::parts_wavelengths`].
+    #[inline]
+    pub fn parts_wavelengths(&self) -> bool {
+        self.bxdf.parts_wavelengths()
+    }
+
+    /// The BSDF per lane in sr⁻¹, without the cosine; 0 of specular lobes. As [`Bxdf::eval`].
+    #[inline]
+    pub fn eval(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
+        self.bxdf.eval(self.frame.to_local(wo), self.frame.to_local(wi))
+    }
+
+    /// Density per lane of [`Bsdf::sample`] in solid angle. As [`Bxdf::pdf`].
+    #[inline]
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
+        self.bxdf.pdf(self.frame.to_local(wo), self.frame.to_local(wi))
+    }
+
+    /// [`Bsdf::eval`] and [`Bsdf::pdf`] in one: the price of one of them.
+    #[inline]
+    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        self.bxdf.eval_and_pdf(self.frame.to_local(wo), self.frame.to_local(wi))
+    }
+
+    /// Samples a direction; `hero` is the lane that decides. As [`Bxdf::sample`].
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2, hero: usize) -> Option<BsdfSample> {
+        let mut sample = self.bxdf.sample(self.frame.to_local(wo), u_lobe, u, hero)?;
+        sample.wi = self.frame.to_world(sample.wi);
+        Some(sample)
+    }
+}
+
+/// Value and density of a BSDF at one pair of directions.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct BsdfValue {
+    /// The BSDF per lane in sr⁻¹, without the cosine.
+    pub f: SampledSpectrum,
+    /// Density per lane of sampling `wi`, in solid angle.
+    pub pdf: SampledSpectrum,
+}

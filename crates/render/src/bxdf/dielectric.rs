@@ -1,0 +1,191 @@
+use tenfold_math::{Vec2, Vec3};
+use tenfold_spectrum::SampledSpectrum;
+
+use super::fresnel::{fresnel_dielectric, fresnel_dielectric_lanes};
+use super::interface::Interface;
+use super::local::{reflect, reflect_local, refract, refract_local, same_hemisphere};
+use super::microfacet::TrowbridgeReitz;
+use super::record::{BsdfSample, Lobe, Scattering};
+
+/// A boundary between dielectrics, smooth or of Trowbridge–Reitz microfacets (Walter et al. 2007), whose index may
+/// differ from lane to lane.
+///
+/// The hero's index decides between reflection and transmission, and the direction of the latter. Radiance that is
+/// transmitted carries `1/η²`, with η of the far side over that of `wo`, as pbrt's `TransportMode::Radiance`.
+#[derive(Copy, Clone, Debug)]
+pub struct Dielectric {
+    eta: SampledSpectrum,
+    distribution: TrowbridgeReitz,
+    dispersive: bool,
+    smooth: bool,
+}
+
+/// The parts of a reflection by microfacets.
+pub(crate) struct MicrofacetReflection {
+    /// Reflectance of the microfacet per lane.
+    pub(crate) fresnel: SampledSpectrum,
+    /// The BRDF of a perfect mirror's microfacets: `D G₂ / (4 cos θo cos θi)`.
+    pub(crate) unit: f32,
+    /// Density in solid angle of reflection about visible normals.
+    pub(crate) visible_pdf: f32,
+}
+
+impl Dielectric {
+    /// A boundary with index `eta` of what lies below the surface over that of what lies above, per lane.
+    #[inline]
+    pub fn new(eta: SampledSpectrum, distribution: TrowbridgeReitz) -> Self {
+        let dispersive = eta.min_component() != eta.max_component();
+        let invisible = eta == SampledSpectrum::ONE;
+        Self { eta, distribution, dispersive, smooth: invisible || distribution.effectively_smooth() }
+    }
+
+    /// Index of the far side over that of the side of `wo`, per lane.
+    #[inline]
+    fn eta_from(&self, wo: Vec3) -> SampledSpectrum {
+        if wo.z >= 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    /// Reflectance per lane of a smooth boundary seen at cosine `cos`, positive, from the side of `wo`.
+    #[inline]
+    pub(crate) fn fresnel(&self, wo: Vec3, cos: f32) -> SampledSpectrum {
+        let eta = self.eta_from(wo);
+        if self.dispersive {
+            fresnel_dielectric_lanes(cos, eta)
+        } else {
+            SampledSpectrum::splat(fresnel_dielectric(cos, eta.lane(0)))
+        }
+    }
+
+    /// Whether the index differs between lanes.
+    #[inline]
+    pub(crate) fn is_dispersive(&self) -> bool {
+        self.dispersive
+    }
+
+    /// Whether the lanes' refracted lobes hardly overlap. Microfacets of roughness α turn a refracted direction by about
+    /// α·(η − 1), dispersion by about the spread of η: the lobes part where the first is the smaller.
+    #[inline]
+    pub(crate) fn parts_wavelengths(&self) -> bool {
+        if !self.dispersive {
+            return false;
+        }
+        let (least, most) = (self.eta.min_component(), self.eta.max_component());
+        self.smooth
+            || self.distribution.alpha_x().max(self.distribution.alpha_y()) * (least - 1.0).abs()
+                < most - least
+    }
+
+    #[inline]
+    pub(crate) fn lobes(&self) -> Lobe {
+        let kind = if self.smooth { Lobe::SPECULAR } else { Lobe::GLOSSY };
+        if self.eta == SampledSpectrum::ONE {
+            Lobe::TRANSMISSION | kind
+        } else {
+            Lobe::REFLECTION | Lobe::TRANSMISSION | kind
+        }
+    }
+
+    /// Reflection alone: the BRDF, and the density of sampling it by visible normals without any choice; with the
+    /// reflectance of the microfacet. Zero where the boundary is smooth.
+    #[inline]
+    pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3) -> MicrofacetReflection {
+        let none = MicrofacetReflection { fresnel: SampledSpectrum::ZERO, unit: 0.0, visible_pdf: 0.0 };
+        let Some(m) = Interface::reflecting_normal(wo, wi) else { return none };
+        let cos = wo.dot(m);
+        if self.smooth || cos <= 0.0 {
+            return none;
+        }
+        MicrofacetReflection {
+            fresnel: self.fresnel(wo, cos),
+            unit: self.distribution.d_g2_over_4_cos_cos(m, wo, wi),
+            visible_pdf: self.distribution.visible_pdf(wo, m) / (4.0 * cos),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn scattering(&self, wo: Vec3, wi: Vec3) -> Scattering<SampledSpectrum> {
+        if self.smooth {
+            return Scattering::ZERO;
+        }
+        if same_hemisphere(wo, wi) {
+            let r = self.reflection(wo, wi);
+            return Scattering { f: r.fresnel * r.unit, pdf: r.fresnel * r.visible_pdf };
+        }
+        if !self.dispersive {
+            let Scattering { f, pdf } = self.transmission(wo, wi, 0);
+            return Scattering { f: SampledSpectrum::splat(f), pdf: SampledSpectrum::splat(pdf) };
+        }
+        let mut all = Scattering::ZERO;
+        for lane in 0..tenfold_spectrum::N {
+            let Scattering { f, pdf } = self.transmission(wo, wi, lane);
+            all.f.set_lane(lane, f);
+            all.pdf.set_lane(lane, pdf);
+        }
+        all
+    }
+
+    /// Transmission of radiance in one lane, and the density of sampling it with this lane as the hero.
+    #[inline]
+    fn transmission(&self, wo: Vec3, wi: Vec3, lane: usize) -> Scattering<f32> {
+        let interface = Interface::new(self.eta.lane(lane), self.distribution);
+        let (Scattering { f, pdf }, fresnel) = interface.transmission_and_fresnel(wo, wi);
+        let eta = interface.eta_from(wo);
+        Scattering { f: f / (eta * eta), pdf: pdf * (1.0 - fresnel) }
+    }
+
+    #[inline]
+    pub(crate) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2, hero: usize) -> Option<BsdfSample> {
+        if self.smooth {
+            return self.sample_smooth(wo, u_lobe, hero);
+        }
+        let eta = self.eta_from(wo).lane(hero);
+        let m = self.distribution.sample_visible(wo, u);
+        let reflected = u_lobe < fresnel_dielectric(wo.dot(m).abs(), eta);
+        let wi = if reflected { reflect(wo, m) } else { refract(wo, m, eta)? };
+        // Light reflected to below, or refracted to above, would have to meet the surface again.
+        if wi.z == 0.0 || same_hemisphere(wo, wi) != reflected {
+            return None;
+        }
+        let Scattering { f, pdf } = self.scattering(wo, wi);
+        let side = if reflected { Lobe::REFLECTION } else { Lobe::TRANSMISSION };
+        (pdf.lane(hero) > 0.0).then_some(BsdfSample {
+            f,
+            wi,
+            pdf,
+            lobe: side | Lobe::GLOSSY,
+            eta: if reflected { 1.0 } else { eta },
+            dispersive: self.dispersive && !reflected,
+        })
+    }
+
+    #[inline]
+    fn sample_smooth(&self, wo: Vec3, u_lobe: f32, hero: usize) -> Option<BsdfSample> {
+        let reflectance = self.fresnel(wo, wo.z.abs());
+        if u_lobe < reflectance.lane(hero) {
+            return Some(BsdfSample {
+                f: reflectance / wo.z.abs(),
+                wi: reflect_local(wo),
+                pdf: reflectance,
+                lobe: Lobe::REFLECTION | Lobe::SPECULAR,
+                eta: 1.0,
+                dispersive: false,
+            });
+        }
+        let etas = self.eta_from(wo);
+        let eta = etas.lane(hero);
+        let wi = refract_local(wo, eta)?;
+        let mut pdf = 1.0 - reflectance;
+        if self.dispersive {
+            // Only lanes with the hero's very index are refracted along with it.
+            pdf = SampledSpectrum::from_fn(|i| if etas.lane(i) == eta { pdf.lane(i) } else { 0.0 });
+        }
+        (pdf.lane(hero) > 0.0).then_some(BsdfSample {
+            f: pdf / (eta * eta * wi.z.abs()),
+            wi,
+            pdf,
+            lobe: Lobe::TRANSMISSION | Lobe::SPECULAR,
+            eta,
+            dispersive: self.dispersive,
+        })
+    }
+}
