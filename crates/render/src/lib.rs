@@ -8,3 +8,5 @@
 //! the seed: the same picture comes out bit for bit, whatever the threads and tiles.
 
 pub mod bxdf;
+pub mod material;
+pub mod texture;
