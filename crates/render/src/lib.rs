@@ -8,5 +8,6 @@
 //! the seed: the same picture comes out bit for bit, whatever the threads and tiles.
 
 pub mod bxdf;
+pub mod light;
 pub mod material;
 pub mod texture;

@@ -1,0 +1,149 @@
+//! Light from the surface of a shape.
+
+use super::area_image::AreaImage;
+use super::{Emission, LightBounds, LightSample, ShadowTarget};
+use std::f32::consts::PI;
+use std::sync::Arc;
+use tenfold_geometry::{NormalCone, Primitive, ReferencePoint, Shape, SurfacePoint};
+use tenfold_math::{Vec2, Vec3};
+use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// The radiance that leaves a surface, the same in all directions of the side that emits.
+#[derive(Clone, Debug)]
+pub enum AreaRadiance {
+    /// The same everywhere.
+    Uniform(Emission),
+    /// An image over the texture coordinates, its top at v = 1, times the light's scale.
+    Image(Arc<AreaImage>),
+}
+
+/// One primitive of a shape, emitting.
+#[derive(Clone, Debug)]
+pub struct DiffuseAreaLight {
+    shape: Arc<Shape>,
+    primitive: u32,
+    radiance: AreaRadiance,
+    scale: f32,
+    two_sided: bool,
+    /// Whether rays pass through it, so that light sampling alone can find it.
+    invisible: bool,
+}
+
+impl DiffuseAreaLight {
+    /// A light over the primitive `primitive` of `shape`, of the given `radiance` times `scale`, on the side
+    /// of the geometric normal or on both.
+    pub fn new(
+        shape: Arc<Shape>,
+        primitive: usize,
+        radiance: AreaRadiance,
+        scale: f32,
+        two_sided: bool,
+    ) -> Self {
+        Self { shape, primitive: primitive as u32, radiance, scale, two_sided, invisible: false }
+    }
+
+    /// The same light as a surface that no ray meets, for shapes whose alpha is 0 everywhere.
+    #[must_use]
+    pub fn invisible(self) -> Self {
+        Self { invisible: true, ..self }
+    }
+
+    #[inline]
+    pub(super) fn primitive(&self) -> Primitive<'_> {
+        self.shape.primitive(self.primitive as usize)
+    }
+
+    /// Radiance averaged over the visible wavelengths and, for images, over the image.
+    fn visible_mean(&self) -> f32 {
+        self.scale
+            * match &self.radiance {
+                AreaRadiance::Uniform(emission) => emission.visible_mean(),
+                AreaRadiance::Image(image) => image.radiance().visible_mean(),
+            }
+    }
+
+    pub(super) fn bounds(&self) -> LightBounds {
+        let primitive = self.primitive();
+        let (bounds, normals, area) = (primitive.bounds(), primitive.normal_cone(), primitive.area());
+        // A convex surface that faces all ways shows a quarter of itself to each (Cauchy).
+        let shown = if normals.cos_theta <= -1.0 { 0.25 * area } else { area };
+        let half = 0.5 * bounds.diagonal();
+        // A ball reaches less far than the corners of its box.
+        let ball = matches!(primitive, Primitive::Sphere(_))
+            && (area / (4.0 * PI * half.x * half.x) - 1.0).abs() < 1e-3
+            && half.max_element() - half.min_element() < 1e-3 * half.x;
+        let intensity = shown * self.visible_mean();
+        LightBounds {
+            bounds,
+            radius: if ball { half.max_element() } else { half.length() },
+            normals: if normals.cos_theta.is_finite() { normals } else { NormalCone::EVERYWHERE },
+            cos_emission: 0.0,
+            intensity: if intensity.is_finite() && !bounds.is_empty() { intensity } else { 0.0 },
+            two_sided: self.two_sided,
+        }
+    }
+
+    /// Whether a surface point with geometric normal `n` emits toward `w`.
+    #[inline]
+    pub(super) fn emits_toward(&self, n: Vec3, w: Vec3) -> bool {
+        self.two_sided || n.dot(w) > 0.0
+    }
+
+    /// Radiance toward the unit direction `w` of the surface point with geometric normal `n` and texture
+    /// coordinates `uv`.
+    #[inline]
+    pub(super) fn emitted(
+        &self,
+        n: Vec3,
+        uv: Vec2,
+        w: Vec3,
+        wavelengths: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        if !self.emits_toward(n, w) {
+            return SampledSpectrum::ZERO;
+        }
+        let value = match &self.radiance {
+            AreaRadiance::Uniform(emission) => emission.sample(wavelengths),
+            AreaRadiance::Image(image) => image.at(uv, wavelengths),
+        };
+        self.scale * value
+    }
+
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        from: &ReferencePoint,
+        u: Vec2,
+        w: &SampledWavelengths,
+    ) -> Option<LightSample> {
+        let primitive = self.primitive();
+        let s = match &self.radiance {
+            AreaRadiance::Uniform(_) => primitive.sample_from(from, u)?,
+            AreaRadiance::Image(image) => image.sample_from(&primitive, from, u)?,
+        };
+        let to_light = s.p - from.p;
+        let distance_squared = to_light.length_squared();
+        if distance_squared == 0.0 || s.pdf.is_nan() || s.pdf <= 0.0 {
+            return None;
+        }
+        let wi = to_light / distance_squared.sqrt();
+        let radiance = self.emitted(s.n, s.uv, -wi, w);
+        (!radiance.is_black()).then(|| LightSample {
+            radiance,
+            wi,
+            target: ShadowTarget::from(&s),
+            pdf: s.pdf,
+            delta: self.invisible,
+        })
+    }
+
+    /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`.
+    #[inline]
+    pub(super) fn pdf(&self, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        let primitive = self.primitive();
+        match &self.radiance {
+            AreaRadiance::Uniform(_) => primitive.pdf_from_point(from, point),
+            AreaRadiance::Image(image) => image.pdf_from(&primitive, from, point),
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! All lights of a scene.
+
+use super::choice::{Entry, LightTree, MAX_LIGHTS};
+use super::{Light, LightSample, Role};
+use tenfold_geometry::{ReferencePoint, SurfaceInteraction};
+use tenfold_math::{Id, Vec2, Vec3};
+use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// All lights of a scene: which of them to sample, and what a path finds by itself.
+///
+/// Lights that are somewhere are chosen by a light tree, with bounds on what each group can send to the
+/// point; those infinitely far away stand beside the tree as one candidate each. Every density is exact:
+/// [`Lights::pdf_hit`] and [`Lights::pdf_escaped`] are what [`Lights::sample`] gives for the same point. The
+/// importance of a light is 0 only where none of its light arrives, from whichever side of the surface;
+/// lights that emit nothing are never chosen.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    all: Vec<Light>,
+    tree: LightTree,
+    far: Vec<FarLight>,
+    skies: Vec<Id<Light>>,
+}
+
+/// A candidate beside the tree.
+#[derive(Copy, Clone, Debug)]
+struct FarLight {
+    light: u32,
+    irradiance: f32,
+    direction: Option<Vec3>,
+}
+
+impl FarLight {
+    /// An estimate of the irradiance at a surface with unit normal `n`, zero for none: comparable to that of
+    /// the tree.
+    #[inline]
+    fn importance(&self, n: Vec3) -> f32 {
+        match self.direction {
+            Some(d) if n != Vec3::ZERO => self.irradiance * d.dot(n).abs(),
+            _ => self.irradiance,
+        }
+    }
+}
+
+/// The chances of the candidates beside each other: one for the tree, if it has any light to offer, and one
+/// for each far light that has. Half of the probability goes to them evenly, so that one that only seems
+/// faint (because the others are hidden) still gets its share, and half in proportion to their importance.
+#[derive(Copy, Clone, Debug)]
+struct Candidates {
+    tree: f32,
+    total: f32,
+    count: f32,
+}
+
+impl Candidates {
+    /// Probability of a candidate of this importance.
+    #[inline]
+    fn probability(&self, importance: f32) -> f32 {
+        if importance <= 0.0 {
+            return 0.0;
+        }
+        if self.count == 1.0 {
+            return 1.0;
+        }
+        0.5 / self.count + 0.5 * (importance / self.total)
+    }
+}
+
+/// A light that was chosen.
+pub(super) struct Choice {
+    pub(super) light: usize,
+    pub(super) pmf: f32,
+}
+
+impl Lights {
+    /// Prepares the choice among `lights`, whose ids are their indices. Takes O(n log n). Lights beyond 2²⁷
+    /// are never sampled.
+    pub fn build(lights: Vec<Light>) -> Self {
+        let (mut entries, mut far) = (Vec::new(), Vec::new());
+        for (i, light) in lights.iter().enumerate().take(MAX_LIGHTS) {
+            match light.role() {
+                Role::Local(bounds) if bounds.intensity > 0.0 => {
+                    entries.push(Entry { bounds, light: i as u32 });
+                }
+                Role::Far { irradiance, direction } if irradiance > 0.0 => {
+                    far.push(FarLight { light: i as u32, irradiance, direction });
+                }
+                Role::Local(_) | Role::Far { .. } => {}
+            }
+        }
+        let tree = LightTree::build(&mut entries, lights.len());
+        let sky = |(i, l): (usize, &Light)| l.is_sky().then(|| Id::new(i));
+        let skies = lights.iter().enumerate().filter_map(sky).collect();
+        Self { all: lights, tree, far, skies }
+    }
+
+    /// How many lights there are.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Whether there is no light.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The light of an id.
+    #[inline]
+    pub fn get(&self, light: Id<Light>) -> &Light {
+        &self.all[light.index()]
+    }
+
+    /// The lights that rays meet when they leave the scene.
+    #[inline]
+    pub fn infinite(&self) -> &[Id<Light>] {
+        &self.skies
+    }
+
+    /// Light that may arrive at `from`, by `u_choice` in `[0, 1)` and `u` in `[0, 1)²`. `None` where no light can be
+    /// found, or the attempt failed: an estimate of 0.
+    #[inline]
+    pub fn sample(
+        &self,
+        from: &ReferencePoint,
+        u_choice: f32,
+        u: Vec2,
+        w: &SampledWavelengths,
+    ) -> Option<LightSample> {
+        let choice = self.choose(from, u_choice)?;
+        let mut sample = self.all[choice.light].sample(from, u, w)?;
+        sample.pdf *= choice.pmf;
+        (sample.pdf > 0.0).then_some(sample)
+    }
+
+    /// The radiance, in W·m⁻²·sr⁻¹·nm⁻¹, that the area light `light` sends toward `wo` from the point `hit`
+    /// of its surface.
+    #[inline]
+    pub fn emitted(
+        &self,
+        light: Id<Light>,
+        hit: &SurfaceInteraction,
+        wo: Vec3,
+        w: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        match self.get(light) {
+            Light::Area(l) => l.emitted(hit.n, hit.uv, wo, w),
+            _ => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// The density with which [`Lights::sample`] would have found, from `from`, the point `hit` on the area
+    /// light `light` in the unit direction `wi`.
+    #[inline]
+    pub fn pdf_hit(
+        &self,
+        from: &ReferencePoint,
+        light: Id<Light>,
+        hit: &SurfaceInteraction,
+        wi: Vec3,
+    ) -> f32 {
+        let Light::Area(l) = self.get(light) else { return 0.0 };
+        if !l.emits_toward(hit.n, -wi) {
+            return 0.0;
+        }
+        let pmf = self.pmf(from, light);
+        if pmf == 0.0 { 0.0 } else { pmf * l.pdf(from, &hit.surface_point()) }
+    }
+
+    /// The radiance, in W·m⁻²·sr⁻¹·nm⁻¹, of the infinite light `light` from the unit `direction`.
+    #[inline]
+    pub fn escaped(&self, light: Id<Light>, direction: Vec3, w: &SampledWavelengths) -> SampledSpectrum {
+        self.get(light).escaped(direction, w)
+    }
+
+    /// The density with which [`Lights::sample`] would have found, from `from`, the unit `direction` of the
+    /// infinite light `light`.
+    #[inline]
+    pub fn pdf_escaped(&self, from: &ReferencePoint, light: Id<Light>, direction: Vec3) -> f32 {
+        self.pmf(from, light) * self.get(light).pdf_escaped(direction)
+    }
+
+    /// The probability with which [`Lights::sample`] chooses `light` at `from`.
+    #[inline]
+    pub fn pmf(&self, from: &ReferencePoint, light: Id<Light>) -> f32 {
+        let light = light.index();
+        if self.tree.contains(light) {
+            let in_tree = self.tree.pmf(from.p, from.ns, light);
+            if self.far.is_empty() || in_tree == 0.0 {
+                return in_tree;
+            }
+            let candidates = self.candidates(from);
+            return candidates.probability(candidates.tree) * in_tree;
+        }
+        match self.far.iter().find(|far| far.light as usize == light) {
+            Some(far) => self.candidates(from).probability(far.importance(from.ns)),
+            None => 0.0,
+        }
+    }
+
+    #[inline]
+    fn candidates(&self, from: &ReferencePoint) -> Candidates {
+        let tree = self.tree.importance(from.p, from.ns);
+        let mut candidates = Candidates { tree, total: tree, count: if tree > 0.0 { 1.0 } else { 0.0 } };
+        for far in &self.far {
+            let importance = far.importance(from.ns);
+            if importance > 0.0 {
+                candidates.total += importance;
+                candidates.count += 1.0;
+            }
+        }
+        candidates
+    }
+
+    #[inline]
+    pub(super) fn choose(&self, from: &ReferencePoint, mut u: f32) -> Option<Choice> {
+        let mut p_tree = 1.0;
+        if !self.far.is_empty() {
+            let candidates = self.candidates(from);
+            let mut chosen = None;
+            for far in &self.far {
+                let pmf = candidates.probability(far.importance(from.ns));
+                if pmf > 0.0 {
+                    chosen = Some(Choice { light: far.light as usize, pmf });
+                    if u < pmf {
+                        return chosen;
+                    }
+                    u -= pmf;
+                }
+            }
+            p_tree = candidates.probability(candidates.tree);
+            if p_tree == 0.0 {
+                // Rounding alone leads past the last far light.
+                return chosen;
+            }
+            u = (u / p_tree).clamp(0.0, tenfold_math::ONE_MINUS_EPSILON);
+        }
+        let chosen = self.tree.sample(from.p, from.ns, u)?;
+        Some(Choice { light: chosen.light as usize, pmf: p_tree * chosen.pmf })
+    }
+}

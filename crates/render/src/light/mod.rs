@@ -1,0 +1,205 @@
+//! Lights: emission, sampling, and the choice among many.
+//!
+//! [`Lights`] is what an integrator talks to; each kind of light is one file. All densities of directions are per
+//! steradian at the point that is lit. A light's strength is compared with another's by
+//! its mean over the visible wavelengths.
+
+mod area;
+mod area_image;
+mod choice;
+mod distant;
+mod emission;
+mod goniometric;
+mod image_infinite;
+mod lights;
+mod point;
+mod projection;
+mod radiance_image;
+mod spot;
+mod uniform;
+
+#[cfg(test)]
+mod tests;
+
+pub use area::{AreaRadiance, DiffuseAreaLight};
+pub use area_image::AreaImage;
+pub use choice::LightBounds;
+pub use distant::DistantLight;
+pub use emission::Emission;
+pub use goniometric::GoniometricLight;
+pub use image_infinite::ImageInfinite;
+pub use lights::Lights;
+pub use point::PointLight;
+pub use projection::{ProjectionLight, Screen};
+pub use radiance_image::RadianceImage;
+pub(crate) use radiance_image::{mean_rgb, weighted_rgb};
+pub use spot::SpotLight;
+pub(crate) use spot::is_similarity;
+pub use uniform::UniformInfinite;
+
+use tenfold_geometry::{ReferencePoint, SHADOW_T_MAX, ShapeSample, ray_between};
+use tenfold_math::{Ray, Vec2, Vec3};
+use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// A source of light.
+#[derive(Clone, Debug)]
+pub enum Light {
+    /// Evenly from a point.
+    Point(PointLight),
+    /// From a point into a cone.
+    Spot(SpotLight),
+    /// From one direction.
+    Distant(DistantLight),
+    /// From a point, an image.
+    Projection(ProjectionLight),
+    /// From a point, by measured intensities.
+    Goniometric(GoniometricLight),
+    /// From one primitive of a shape.
+    Area(DiffuseAreaLight),
+    /// Evenly from all directions.
+    Uniform(UniformInfinite),
+    /// From all directions, by an image.
+    Image(ImageInfinite),
+}
+
+/// Light that may reach a point, if nothing is in the way.
+#[derive(Copy, Clone, Debug)]
+pub struct LightSample {
+    /// Of area and infinite lights, the radiance in W·m⁻²·sr⁻¹·nm⁻¹; of lights at a point, the intensity over
+    /// the squared distance, and of distant ones the irradiance, both in W·m⁻²·nm⁻¹.
+    pub radiance: SampledSpectrum,
+    /// Unit direction to the light.
+    pub wi: Vec3,
+    /// What the shadow ray must reach.
+    pub target: ShadowTarget,
+    /// Density of `wi` per steradian times the probability of the light; where `delta`, that probability alone.
+    pub pdf: f32,
+    /// Whether no other way of sampling finds this light.
+    pub delta: bool,
+}
+
+/// The far end of a shadow ray.
+#[derive(Copy, Clone, Debug)]
+pub enum ShadowTarget {
+    /// A point on a surface.
+    Surface {
+        /// The point.
+        p: Vec3,
+        /// Bound on its absolute error.
+        p_error: Vec3,
+        /// Its unit geometric normal.
+        n: Vec3,
+    },
+    /// A point in space.
+    Point(Vec3),
+    /// Infinitely far away in the direction of the sample.
+    Infinity,
+}
+
+impl From<&ShapeSample> for ShadowTarget {
+    fn from(s: &ShapeSample) -> Self {
+        Self::Surface { p: s.p, p_error: s.p_error, n: s.n }
+    }
+}
+
+/// A ray that must be free for light to arrive.
+#[derive(Copy, Clone, Debug)]
+pub struct ShadowRay {
+    /// From the lit point to the light.
+    pub ray: Ray,
+    /// Only what the ray meets before this parameter is in the way.
+    pub t_max: f32,
+}
+
+impl LightSample {
+    /// The ray that must be free, from the point that the sample was made for.
+    #[inline]
+    pub fn shadow_ray(&self, from: &ReferencePoint) -> ShadowRay {
+        match self.target {
+            ShadowTarget::Surface { p, p_error, n } => ShadowRay {
+                ray: ray_between(from.p, from.p_error, from.n, p, p_error, n, from.time),
+                t_max: SHADOW_T_MAX,
+            },
+            ShadowTarget::Point(p) => ShadowRay { ray: from.spawn_ray_to_point(p), t_max: SHADOW_T_MAX },
+            ShadowTarget::Infinity => ShadowRay { ray: from.spawn_ray(self.wi), t_max: f32::INFINITY },
+        }
+    }
+}
+
+/// How a light enters the choice among all.
+#[derive(Copy, Clone, Debug)]
+enum Role {
+    /// With others, by where it is.
+    Local(LightBounds),
+    /// By itself: infinitely far away, with the irradiance that it makes, averaged over the visible
+    /// wavelengths, on a surface turned toward the `direction`, or on any surface where there is none.
+    Far { irradiance: f32, direction: Option<Vec3> },
+}
+
+impl Light {
+    fn role(&self) -> Role {
+        let sky = |radiance: f32| Role::Far { irradiance: std::f32::consts::PI * radiance, direction: None };
+        match self {
+            Self::Point(l) => Role::Local(l.bounds()),
+            Self::Spot(l) => Role::Local(l.bounds()),
+            Self::Projection(l) => Role::Local(l.bounds()),
+            Self::Goniometric(l) => Role::Local(l.bounds()),
+            Self::Area(l) => Role::Local(l.bounds()),
+            Self::Distant(l) => {
+                Role::Far { irradiance: l.irradiance.visible_mean(), direction: Some(l.direction) }
+            }
+            Self::Uniform(l) => sky(l.radiance.visible_mean()),
+            Self::Image(l) => sky(l.visible_mean()),
+        }
+    }
+
+    /// Whether rays that leave the scene meet it.
+    pub fn is_sky(&self) -> bool {
+        matches!(self, Self::Uniform(_) | Self::Image(_))
+    }
+
+    /// Light from this light at `from`, by `u` in `[0, 1)²`; the density is that of the direction alone.
+    #[inline]
+    fn sample(&self, from: &ReferencePoint, u: Vec2, w: &SampledWavelengths) -> Option<LightSample> {
+        match self {
+            Self::Point(l) => l.sample(from, w),
+            Self::Spot(l) => l.sample(from, w),
+            Self::Distant(l) => Some(l.sample(w)),
+            Self::Projection(l) => l.sample(from, w),
+            Self::Goniometric(l) => l.sample(from, w),
+            Self::Area(l) => l.sample(from, u, w),
+            Self::Uniform(l) => Some(l.sample(u, w)),
+            Self::Image(l) => l.sample(u, w),
+        }
+    }
+
+    /// Radiance from the unit `direction`, infinitely far away.
+    #[inline]
+    fn escaped(&self, direction: Vec3, w: &SampledWavelengths) -> SampledSpectrum {
+        match self {
+            Self::Uniform(l) => l.radiance.sample(w),
+            Self::Image(l) => l.radiance(direction, w),
+            Self::Point(_)
+            | Self::Spot(_)
+            | Self::Distant(_)
+            | Self::Projection(_)
+            | Self::Goniometric(_)
+            | Self::Area(_) => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// Density with which [`Light::sample`] finds the infinitely far unit `direction`.
+    #[inline]
+    fn pdf_escaped(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Uniform(l) => l.pdf(),
+            Self::Image(l) => l.pdf(direction),
+            Self::Point(_)
+            | Self::Spot(_)
+            | Self::Distant(_)
+            | Self::Projection(_)
+            | Self::Goniometric(_)
+            | Self::Area(_) => 0.0,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! χ² of the directions of samples against the densities that paths compute.
+
+use super::*;
+use tenfold_math::Id;
+use tenfold_testkit::Options;
+use tenfold_testkit::chi2::sphere_test;
+
+const TESTS: usize = 40;
+
+fn check(what: &str, lights: &Lights, from: &ReferencePoint, seed: u64) {
+    let options = Options {
+        samples: 60_000,
+        theta_bins: 12,
+        phi_bins: 16,
+        seed,
+        tests: TESTS,
+        evaluations: 20_000,
+        ..Options::default()
+    };
+    let sample = |u_choice, u| lights.sample(from, u_choice, u, &wavelengths()).map(|s| s.wi);
+    sphere_test(sample, |wi| f64::from(density(lights, from, wi)), &options).check(what);
+}
+
+fn references() -> [ReferencePoint; 3] {
+    [
+        surface(Vec3::new(0.1, 0.2, 0.0), Vec3::Z),
+        surface(Vec3::new(0.8, -0.9, 0.4), Vec3::new(0.6, 0.0, 0.8)),
+        ReferencePoint::free(Vec3::new(-0.5, 0.3, -1.0), 0.0),
+    ]
+}
+
+#[test]
+fn area_lights_have_the_density_of_their_samples() {
+    let t = Transform::translate(Vec3::new(0.0, 0.0, 1.5)) * Transform::rotate(1.2, Vec3::X).unwrap();
+    let shapes = [
+        ("sphere", sphere(Vec3::new(0.2, -0.1, 1.2), 0.5)),
+        ("disk", disk(1.1, 0.7)),
+        ("cylinder", cylinder(t, 0.3)),
+        ("patch", patch(ceiling(), &[])),
+        ("triangles", triangles(&ceiling(), &[0, 1, 2, 2, 1, 3])),
+    ];
+    for (seed, (name, shape)) in shapes.into_iter().enumerate() {
+        let lights = Lights::build(area(shape, 2.0, false));
+        for (i, from) in references().iter().enumerate() {
+            check(&format!("{name}, reference {i}"), &lights, from, seed as u64 * 3 + i as u64);
+        }
+    }
+}
+
+#[test]
+fn images_on_area_lights_too() {
+    let mirrored = [Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::ZERO];
+    let mut skewed = ceiling();
+    skewed[1].x += 0.4;
+    skewed[3].x += 0.4;
+    let shapes = [
+        ("rectangle", patch(ceiling(), &[])),
+        ("mirrored", patch(ceiling(), &mirrored)),
+        ("parallelogram", patch(skewed, &[])),
+        ("disk", disk(1.1, 0.7)),
+    ];
+    for (seed, (name, shape)) in shapes.into_iter().enumerate() {
+        let lights = Lights::build(vec![textured(shape)]);
+        for (i, from) in references().iter().enumerate() {
+            let seed = 100 + seed as u64 * 3 + i as u64;
+            check(&format!("{name}, reference {i}"), &lights, from, seed);
+        }
+    }
+}
+
+#[test]
+fn skies_have_the_density_of_their_samples() {
+    let uniform = Light::Uniform(UniformInfinite { radiance: constant(1.0) });
+    for (i, light) in [uniform, image_sky()].into_iter().enumerate() {
+        check(&format!("sky {i}"), &Lights::build(vec![light]), &references()[0], 200 + i as u64);
+    }
+}
+
+#[test]
+fn mixed_scenes_have_the_density_of_their_samples() {
+    let mut all = area(sphere(Vec3::new(0.2, -0.1, 1.2), 0.4), 20.0, false);
+    all.extend(area(triangles(&ceiling(), &[0, 1, 2, 2, 1, 3]).clone(), 1.0, true));
+    all.push(Light::Uniform(UniformInfinite { radiance: constant(0.3) }));
+    all.push(image_sky());
+    let lights = Lights::build(all);
+    for (i, from) in references().iter().enumerate() {
+        check(&format!("mixed, reference {i}"), &lights, from, 300 + i as u64);
+    }
+}
+
+/// The density of a sample is the one that a path finds which meets the same point by itself.
+#[test]
+fn densities_agree_sample_by_sample() {
+    let mut all = area(sphere(Vec3::new(0.2, -0.1, 1.2), 0.4), 20.0, false);
+    all.push(textured(patch(ceiling(), &[])));
+    all.extend(area(disk(1.4, 0.6), 3.0, false));
+    all.push(image_sky());
+    let mut rng = Rng::new(5);
+    for all in all.into_iter().map(|l| vec![l]) {
+        let lights = Lights::build(all);
+        for from in references() {
+            let mut off = 0;
+            for _ in 0..2000 {
+                let (c, u) = (rng.f32(), rng.vec2());
+                let Some(s) = lights.sample(&from, c, u, &wavelengths()) else { continue };
+                let pdf = density(&lights, &from, s.wi);
+                // At edges and between pixels rounding decides; there are few of them.
+                off += ((pdf / s.pdf - 1.0).abs() > 2e-3) as u32;
+                assert!(!s.delta && s.pdf > 0.0 && s.wi.is_normalized());
+            }
+            assert!(off <= 6, "{off} of 2000: {:?}", lights.get(Id::new(0)));
+        }
+    }
+}
+
+#[test]
+fn a_sample_shines_what_a_ray_sees() {
+    let lights = Lights::build(vec![textured(patch(ceiling(), &[]))]);
+    let from = references()[0];
+    let mut rng = Rng::new(9);
+    for _ in 0..500 {
+        let Some(s) = lights.sample(&from, 0.5, rng.vec2(), &wavelengths()) else { continue };
+        let hit = seen(lights.get(Id::new(0)), &from, s.wi).unwrap();
+        let emitted = lights.emitted(Id::new(0), &hit, -s.wi, &wavelengths());
+        assert!((emitted[0] - s.radiance[0]).abs() <= 1e-3 * s.radiance[0].max(0.1), "{emitted:?} {s:?}");
+        let shadow = s.shadow_ray(&from);
+        assert!((shadow.ray.direction.normalize() - s.wi).length() < 1e-3 && shadow.t_max < 1.0);
+    }
+}
