@@ -8,6 +8,13 @@
 //! the seed: the same picture comes out bit for bit, whatever the threads and tiles.
 
 pub mod bxdf;
+pub mod camera;
+pub mod compile;
+pub mod film;
+pub mod filter;
+pub mod integrator;
 pub mod light;
 pub mod material;
+pub mod scene;
+pub mod schedule;
 pub mod texture;

@@ -1,0 +1,202 @@
+//! Cameras: from a point on the film, a point on the lens and an instant to a ray.
+
+mod lens;
+mod projection;
+
+pub use lens::ThinLens;
+pub use projection::{Projection, ScreenWindow};
+use tenfold_math::{Motion, Ray, UVec2, Vec2, Vec3, lerp};
+
+/// The interval during which the shutter is open.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Shutter {
+    /// The instant of opening.
+    pub open: f32,
+    /// The instant of closing, not before `open`.
+    pub close: f32,
+}
+
+impl Shutter {
+    /// The instant at fraction `u` of the interval.
+    #[inline]
+    pub fn instant(&self, u: f32) -> f32 {
+        lerp(u, self.open, self.close)
+    }
+}
+
+/// A camera, perhaps moving. Camera space has the view along +z, +y up and +x to the right.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// Camera space to world space.
+    pub world_from_camera: Motion,
+    /// Perspective or orthographic.
+    pub projection: Projection,
+    /// The lens; `None` for a pinhole.
+    pub lens: Option<ThinLens>,
+    /// When the shutter is open.
+    pub shutter: Shutter,
+    /// Pixels of the whole picture.
+    pub resolution: UVec2,
+}
+
+/// How far the points under neighbouring pixels lie apart on a surface; see [`Camera::pixel_differentials`].
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct PixelDifferentials {
+    /// From a point to the one a pixel to the right.
+    pub dpdx: Vec3,
+    /// From a point to the one a pixel down.
+    pub dpdy: Vec3,
+}
+
+impl Camera {
+    /// The ray through `film` (in pixels from the upper left corner of the picture) and the point of the lens that
+    /// `u_lens` chooses, at fraction `u_time` of the shutter interval. Its direction has unit length, and its
+    /// weight is one.
+    #[inline]
+    pub fn ray(&self, film: Vec2, u_lens: Vec2, u_time: f32) -> Ray {
+        let time = self.shutter.instant(u_time);
+        let mut ray = self.projection.ray(film / self.resolution.as_vec2());
+        if let Some(lens) = &self.lens {
+            ray = lens.refract(ray, u_lens);
+        }
+        let world = self.world_from_camera.at(time);
+        Ray::new(world.point(ray.origin), world.vector(ray.direction).normalize(), time)
+    }
+
+    /// The footprint of a pixel at a point `p` with normal `n` of a surface, as though the camera saw the tangent
+    /// plane there directly. Right for points seen directly, and about right, erring to the small side, for
+    /// those seen in mirrors (pbrt book, 4th edition, §10.1.1). `scale` narrows it where a pixel has many samples.
+    pub fn pixel_differentials(&self, p: Vec3, n: Vec3, time: f32, scale: f32) -> PixelDifferentials {
+        let camera_from_world = self.world_from_camera.at(time).inverse();
+        let p_camera = camera_from_world.point(p);
+        let n_camera = camera_from_world.normal(n);
+        let pixel = self.projection.pixel_size(self.resolution);
+        let world = camera_from_world.inverse();
+        // Where the ray moved by one pixel meets the tangent plane.
+        let step = |moved: Ray| {
+            let along = moved.direction.dot(n_camera);
+            if along == 0.0 {
+                return Vec3::ZERO;
+            }
+            let t = (p_camera - moved.origin).dot(n_camera) / along;
+            let d = world.vector(moved.at(t) - p_camera) * scale;
+            if d.is_finite() { d } else { Vec3::ZERO }
+        };
+        let moved = |offset: Vec2| self.projection.ray_to(p_camera, offset);
+        PixelDifferentials {
+            dpdx: step(moved(Vec2::new(pixel.x, 0.0))),
+            dpdy: step(moved(Vec2::new(0.0, -pixel.y))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenfold_math::ops;
+    use tenfold_math::{Transform, vec2};
+
+    fn camera(projection: Projection, lens: Option<ThinLens>) -> Camera {
+        Camera {
+            world_from_camera: Motion::still(Transform::IDENTITY),
+            projection,
+            lens,
+            shutter: Shutter { open: 0.0, close: 1.0 },
+            resolution: UVec2::new(200, 100),
+        }
+    }
+
+    #[test]
+    fn corners_of_the_film_see_the_field_of_view() {
+        let c = camera(Projection::perspective(90f32.to_radians(), ScreenWindow::for_aspect(2.0)), None);
+        let d = c.ray(vec2(0.0, 0.0), Vec2::splat(0.5), 0.0).direction;
+        // The narrower axis spans 90°; the film's upper left is at -x and +y.
+        assert!((d / d.z - Vec3::new(-2.0, 1.0, 1.0)).length() < 1e-5, "{d}");
+        let d = c.ray(vec2(100.0, 50.0), Vec2::splat(0.5), 0.0).direction;
+        assert!((d - Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn all_rays_through_the_lens_meet_in_the_plane_of_focus() {
+        let lens = ThinLens { radius: 0.3, focal_distance: 5.0 };
+        for projection in [
+            Projection::perspective(0.6, ScreenWindow::for_aspect(2.0)),
+            Projection::orthographic(ScreenWindow::for_aspect(2.0)),
+        ] {
+            let c = camera(projection, Some(lens));
+            let film = vec2(31.0, 77.0);
+            let meet = |u: Vec2| {
+                let r = c.ray(film, u, 0.0);
+                r.at((5.0 - r.origin.z) / r.direction.z)
+            };
+            let focus = meet(Vec2::splat(0.5));
+            for u in [vec2(0.0, 0.1), vec2(0.9, 0.4), vec2(0.3, 0.99)] {
+                assert!((meet(u) - focus).length() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn a_lens_focuses_however_far() {
+        let pinhole = camera(Projection::perspective(0.6, ScreenWindow::for_aspect(2.0)), None);
+        let film = vec2(31.0, 77.0);
+        let chief = pinhole.ray(film, Vec2::ZERO, 0.0).direction;
+        for focal_distance in [1e19, 1e30, f32::MAX] {
+            let lens = Camera { lens: Some(ThinLens { radius: 0.3, focal_distance }), ..pinhole.clone() };
+            let seen = lens.ray(film, vec2(0.9, 0.4), 0.0);
+            assert!(
+                (seen.direction - chief).length() < 1e-6 && seen.origin != Vec3::ZERO,
+                "{focal_distance}"
+            );
+        }
+    }
+
+    /// A point at depth z is seen through the whole lens: its image spreads over a circle of confusion whose
+    /// radius follows from similar triangles, `r_film(z) = R · |z - f| / z · (pixels per unit at depth f)`, which is
+    /// the thin lens formula with the film at the conjugate of the plane of focus.
+    #[test]
+    fn circle_of_confusion_follows_the_lens_formula() {
+        let lens = ThinLens { radius: 0.25, focal_distance: 4.0 };
+        let fov = 0.7f32;
+        let c = camera(Projection::perspective(fov, ScreenWindow::for_aspect(2.0)), Some(lens));
+        for depth in [2.0f32, 3.0, 6.0, 20.0] {
+            // For every lens point, find the film point whose ray passes the point (0, 0, depth): the film point
+            // of the chief ray through where the line lens → point crosses the plane of focus.
+            let pixels_per_unit = 50.0 / (ops::tan(fov / 2.0) * lens.focal_distance);
+            let expected = lens.radius * (depth - lens.focal_distance).abs() / depth * pixels_per_unit;
+            let mut largest = 0f32;
+            for i in 0..64 {
+                let u = vec2(i as f32 / 64.0, 0.0);
+                let on_lens = c.ray(vec2(100.0, 50.0), u, 0.0).origin;
+                let at_focus =
+                    on_lens + (Vec3::new(0.0, 0.0, depth) - on_lens) * (lens.focal_distance / depth);
+                let film = vec2(100.0 + at_focus.x * pixels_per_unit, 50.0 - at_focus.y * pixels_per_unit);
+                let ray = c.ray(film, u, 0.0);
+                let p = ray.at((depth - ray.origin.z) / ray.direction.z);
+                assert!(p.truncate().length() < 1e-4, "{p}");
+                largest = largest.max(film.distance(vec2(100.0, 50.0)));
+            }
+            assert!((largest / expected - 1.0).abs() < 1e-3, "{depth}: {largest} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_footprint_is_the_distance_between_neighbouring_pixels() {
+        for projection in [
+            Projection::perspective(0.6, ScreenWindow::for_aspect(2.0)),
+            Projection::orthographic(ScreenWindow::for_aspect(2.0)),
+        ] {
+            let c = camera(projection, None);
+            let n = Vec3::new(0.1, 0.2, -1.0).normalize();
+            let hit = |film: Vec2| {
+                let r = c.ray(film, Vec2::splat(0.5), 0.0);
+                r.at((Vec3::new(0.0, 0.0, 7.0) - r.origin).dot(n) / r.direction.dot(n))
+            };
+            let film = vec2(120.0, 40.0);
+            let f = c.pixel_differentials(hit(film), n, 0.0, 1.0);
+            let near = |a: Vec3, b: Vec3| (a - b).length() < 0.01 * b.length();
+            assert!(near(f.dpdx, hit(film + vec2(1.0, 0.0)) - hit(film)), "{f:?}");
+            assert!(near(f.dpdy, hit(film + vec2(0.0, 1.0)) - hit(film)), "{f:?}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! The film: exact sums of samples, and the picture they make.
+//!
+//! One sample contributes to one pixel, and sums are kept in fixed point: addition is associative, so neither the
+//! order of the samples nor the way a render is divided into tiles, threads or machines can change a bit.
+
+mod bounds;
+mod exact;
+mod sensor;
+
+pub use bounds::PixelBounds;
+pub use exact::{ExactSum, LARGEST_SAMPLE};
+pub use sensor::Sensor;
+use tenfold_math::{UVec2, Vec3};
+
+/// What a pixel has received so far.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct PixelSum {
+    /// Sums of the three channels.
+    rgb: [ExactSum; 3],
+    /// Number of samples in the sums.
+    samples: u32,
+}
+
+impl PixelSum {
+    /// Adds a sample. Returns whether it was taken: a sample that is not finite, or larger than
+    /// [`LARGEST_SAMPLE`], is left out, and does not count.
+    #[inline]
+    #[must_use]
+    pub fn add(&mut self, rgb: Vec3) -> bool {
+        if rgb.is_nan() || rgb.abs().max_element() > LARGEST_SAMPLE {
+            return false;
+        }
+        self.rgb[0].add(rgb.x);
+        self.rgb[1].add(rgb.y);
+        self.rgb[2].add(rgb.z);
+        self.samples += 1;
+        true
+    }
+
+    /// Adds everything that `other` has received.
+    #[inline]
+    pub fn merge(&mut self, other: &Self) {
+        for (a, b) in self.rgb.iter_mut().zip(&other.rgb) {
+            a.merge(b);
+        }
+        self.samples += other.samples;
+    }
+
+    /// Number of samples received.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The mean of the samples; black where there are none.
+    pub fn mean(&self) -> Vec3 {
+        let n = self.samples.max(1) as f64;
+        Vec3::from_array(self.rgb.map(|sum| (sum.to_f64() / n) as f32))
+    }
+}
+
+/// The pixels within some bounds of the full picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Film {
+    bounds: PixelBounds,
+    pixels: Vec<PixelSum>,
+}
+
+impl Film {
+    /// An empty film.
+    pub fn new(bounds: PixelBounds) -> Self {
+        Self { bounds, pixels: vec![PixelSum::default(); bounds.area()] }
+    }
+
+    /// The pixels covered.
+    pub fn bounds(&self) -> PixelBounds {
+        self.bounds
+    }
+
+    /// The pixel at `p`, which must lie within the bounds.
+    #[inline]
+    pub fn pixel(&self, p: UVec2) -> &PixelSum {
+        &self.pixels[self.bounds.index(p)]
+    }
+
+    /// The pixel at `p`, which must lie within the bounds.
+    #[inline]
+    pub fn pixel_mut(&mut self, p: UVec2) -> &mut PixelSum {
+        &mut self.pixels[self.bounds.index(p)]
+    }
+
+    /// Adds what another film, whose bounds lie within these, has received.
+    pub fn merge(&mut self, other: &Self) {
+        for p in other.bounds.pixels() {
+            let index = self.bounds.index(p);
+            self.pixels[index].merge(other.pixel(p));
+        }
+    }
+
+    /// The mean of every pixel, row by row from the top: linear RGB.
+    pub fn means(&self) -> Vec<Vec3> {
+        self.pixels.iter().map(PixelSum::mean).collect()
+    }
+
+    /// Samples in the whole film.
+    pub fn samples(&self) -> u64 {
+        self.pixels.iter().map(|p| p.samples as u64).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenfold_math::vec3;
+
+    #[test]
+    fn the_sum_does_not_depend_on_order_or_grouping() {
+        let samples: Vec<Vec3> = (0..1000u32)
+            .map(|i| {
+                let x = (i.wrapping_mul(2654435761) >> 8) as f32;
+                vec3(x * 1e-9, x * 1e5, (x - 8e6) * 0.37)
+            })
+            .collect();
+        let sum = |s: &mut dyn Iterator<Item = &Vec3>| {
+            let mut pixel = PixelSum::default();
+            s.for_each(|v| assert!(pixel.add(*v)));
+            pixel
+        };
+        let whole = sum(&mut samples.iter());
+        assert_eq!(whole, sum(&mut samples.iter().rev()));
+        let mut parts = sum(&mut samples[700..].iter());
+        parts.merge(&sum(&mut samples[..123].iter()));
+        parts.merge(&sum(&mut samples[123..700].iter()));
+        assert_eq!(whole, parts);
+        let mean = samples.iter().map(|v| v.y as f64).sum::<f64>() / 1000.0;
+        assert!((whole.mean().y as f64 / mean - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bad_samples_are_left_out() {
+        let mut pixel = PixelSum::default();
+        for bad in [vec3(f32::NAN, 0.0, 0.0), vec3(0.0, f32::INFINITY, 0.0), vec3(0.0, 0.0, -1e30)] {
+            assert!(!pixel.add(bad));
+        }
+        assert!(pixel.add(Vec3::ONE) && pixel.samples() == 1 && pixel.mean() == Vec3::ONE);
+    }
+}

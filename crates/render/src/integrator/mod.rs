@@ -1,0 +1,12 @@
+//! The path tracer.
+//!
+//! One sample of a pixel is one path (or, behind dispersive glass, a few): from the camera backward, at every surface
+//! with a light sampled next to the scattered direction, the two combined by multiple importance sampling
+//! (Veach 1997, §9.2), for four wavelengths at once.
+
+mod path;
+mod spectral;
+mod tracer;
+
+pub use spectral::DispersionRule;
+pub use tracer::{PathTracer, RayCounts, Workspace};

@@ -1,0 +1,13 @@
+//! The schedule: which pixels are rendered when and by whom.
+//!
+//! The work is cut into items, a block of samples of a tile of pixels each, which the threads take from a shared counter.
+//! A sample is a pure function of the scene, the seed, the pixel and its index, and the film adds exactly: neither the
+//! cut nor the order nor the number of threads can change the picture.
+
+mod render;
+mod settings;
+mod statistics;
+
+pub use render::{Progress, Render, render, sample_radiance};
+pub use settings::{RenderSettings, TileOrder};
+pub use statistics::{DroppedSample, Statistics};

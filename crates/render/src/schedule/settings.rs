@@ -1,0 +1,52 @@
+use crate::{film::PixelBounds, integrator::DispersionRule, scene::Scene};
+use std::num::NonZeroUsize;
+use tenfold_sampling::SamplerKind;
+
+/// In which order tiles are rendered. The picture is the same for all.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum TileOrder {
+    /// From the middle outward: what matters most shows first.
+    #[default]
+    Centre,
+    /// Row by row from the top.
+    Rows,
+    /// Row by row from the bottom.
+    Reverse,
+}
+
+/// What a render does, beyond what the scene says.
+#[derive(Clone, Debug)]
+pub struct RenderSettings {
+    /// Which sampler.
+    pub sampler: SamplerKind,
+    /// Samples a pixel.
+    pub spp: u32,
+    /// Distinguishes renders of the same scene.
+    pub seed: u64,
+    /// The pixels to render.
+    pub bounds: PixelBounds,
+    /// Number of threads; all cores where `None`.
+    pub threads: Option<NonZeroUsize>,
+    /// Edge length of a tile, in pixels.
+    pub tile_side: u32,
+    /// In which order tiles go.
+    pub tile_order: TileOrder,
+    /// What becomes of the other wavelengths at dispersive glass.
+    pub dispersion: DispersionRule,
+}
+
+impl RenderSettings {
+    /// What the scene itself asks for.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            sampler: scene.sampler.kind,
+            spp: scene.sampler.spp,
+            seed: scene.sampler.seed,
+            bounds: scene.film.bounds,
+            threads: None,
+            tile_side: 16,
+            tile_order: TileOrder::default(),
+            dispersion: DispersionRule::default(),
+        }
+    }
+}
