@@ -1,0 +1,107 @@
+//! What a render took, told at its end.
+
+use crate::{
+    diagnostics::say,
+    load::Loaded,
+    output::Target,
+    units::{bytes, count, duration, plural},
+};
+use serde_json::{Value, json};
+use tenfold_render::schedule::{Render, RenderSettings, Statistics};
+
+/// The closing line.
+pub(crate) fn closing_line(render: &Render, settings: &RenderSettings, written: &[Target]) -> String {
+    let statistics = &render.statistics;
+    let per_second = |n: u64| count(n as f64 / statistics.seconds.max(1e-6));
+    let size = render.film.bounds().size();
+    let files: Vec<_> = written.iter().map(|target| target.path.display().to_string()).collect();
+    let files = if files.is_empty() { String::new() } else { format!("{}: ", files.join(", ")) };
+    format!(
+        "{files}{} × {} pixels with {} in {}; {} samples ({}/s), {} rays ({}/s)",
+        size.x,
+        size.y,
+        plural(settings.spp as usize, "sample"),
+        duration(statistics.seconds),
+        count(statistics.samples as f64),
+        per_second(statistics.samples),
+        count(statistics.rays.total() as f64),
+        per_second(statistics.rays.total()),
+    )
+}
+
+/// What to say of samples that were left out, if any were.
+pub(crate) fn dropped(statistics: &Statistics) -> Option<String> {
+    let first = statistics.first_dropped.first()?;
+    let (x, y) = (first.pixel.x, first.pixel.y);
+    let were = if statistics.dropped == 1 { "was" } else { "were" };
+    Some(format!(
+        "warning: {} {were} not finite and {were} left out; the first is sample {} of pixel {x},{y} (--pixel {x},{y} renders it alone)",
+        plural(statistics.dropped as usize, "sample"),
+        first.index,
+    ))
+}
+
+/// What programs are told at the end.
+pub(crate) fn completed(render: &Render, settings: &RenderSettings, written: &[Target]) -> Value {
+    let statistics = &render.statistics;
+    let first = statistics.first_dropped.first();
+    let bounds = render.film.bounds();
+    let mut fields = json!({
+        "outputs": written.iter().map(|t| t.path.display().to_string()).collect::<Vec<_>>(),
+        "width": bounds.size().x,
+        "height": bounds.size().y,
+        "samples_per_pixel": settings.spp,
+        "seconds": statistics.seconds,
+        "samples": statistics.samples,
+        "samples_per_second": statistics.samples as f64 / statistics.seconds.max(1e-6),
+        "path_rays": statistics.rays.path,
+        "shadow_rays": statistics.rays.shadow,
+        "dropped_samples": statistics.dropped,
+        "first_dropped": first.map(|d| json!({ "x": d.pixel.x, "y": d.pixel.y, "index": d.index })),
+    });
+    if bounds.area() == 1 {
+        fields["value"] = json!(render.film.means()[0].to_array());
+    }
+    fields
+}
+
+/// Prints the table of `--stats`.
+pub(crate) fn print_stats(loaded: &Loaded, render: &Render) {
+    let (statistics, counts) = (&render.statistics, &loaded.counts);
+    let world = loaded.scene.world.stats();
+    let per_sample = |n: u64| {
+        format!("{}  ({:.2} a sample)", count(n as f64), n as f64 / statistics.samples.max(1) as f64)
+    };
+    let number = |n: usize| n.to_string();
+    let mut rows = vec![
+        ("reading the scene", duration(loaded.read_seconds)),
+        ("compiling it, with its files and hierarchies", duration(loaded.compile_seconds)),
+        ("rendering", duration(statistics.seconds)),
+        ("samples", count(statistics.samples as f64)),
+        ("samples left out, not finite", statistics.dropped.to_string()),
+        ("path rays", per_sample(statistics.rays.path)),
+        ("shadow rays", per_sample(statistics.rays.shadow)),
+        ("shapes in the file", number(counts.shapes)),
+        ("instances", number(counts.instances)),
+        ("materials", number(counts.materials)),
+        ("textures", number(counts.textures)),
+        ("lights", number(loaded.scene.lights.len())),
+        ("primitives", number(world.primitives)),
+        ("triangles without area, left out", number(world.degenerate)),
+        ("hierarchy nodes", number(world.nodes)),
+        ("hierarchy memory", bytes(world.bytes as u64)),
+    ];
+    if let Some(peak) = peak_memory() {
+        rows.push(("peak memory of the program", bytes(peak)));
+    }
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    rows.iter().for_each(|(name, value)| say(&format!("  {name:<width$}  {value}")));
+}
+
+/// The largest amount of memory that the program has had, in bytes, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024)
+}
