@@ -87,7 +87,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub(crate) seed: Option<u64>,
 
-    /// independent, stratified, paddedsobol or zsobol [default: what the scene says]
+    /// independent, jittered (or stratified), n-rooks, multi-jittered, halton, paddedsobol or zsobol [default: what the scene
+    /// says]
     #[arg(long, value_name = "NAME", value_parser = sampler, help_heading = "Sampling")]
     pub(crate) sampler: Option<Mapped>,
 
@@ -214,7 +215,7 @@ fn list<T: std::str::FromStr + PartialOrd + Copy, const N: usize>(text: &str) ->
 
 fn sampler(name: &str) -> Result<Mapped, String> {
     SamplerKind::from_pbrt(name).ok_or_else(|| {
-        let known: Vec<_> = SamplerKind::ALL.iter().map(|kind| kind.name()).collect();
+        let known: Vec<_> = SamplerKind::ALL.iter().map(|kind| kind.name()).chain(["jittered"]).collect();
         match tenfold_scene::nearest(name, known.iter().copied()) {
             Some(near) => format!("there is no such sampler; did you mean {near}?"),
             None => format!("there is no such sampler; there are {}", known.join(", ")),

@@ -20,7 +20,7 @@ fn measure(calls: u32, mut run: impl FnMut() -> f32) -> f64 {
 
 fn main() {
     println!(
-        "{:12} {:>8} {:>8} {:>8} {:>8} {:>14}",
+        "{:14} {:>8} {:>8} {:>8} {:>8} {:>14}",
         "ns", "at", "get_1d", "get_2d", "hash", "get_2d chained"
     );
     for kind in SamplerKind::ALL {
@@ -72,6 +72,6 @@ fn main() {
             }
             f32::from(b)
         });
-        println!("{:12} {start:8.2} {one:8.2} {two:8.2} {hash:8.2} {chained:14.2}", kind.name());
+        println!("{:14} {start:8.2} {one:8.2} {two:8.2} {hash:8.2} {chained:14.2}", kind.name());
     }
 }

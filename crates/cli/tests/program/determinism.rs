@@ -44,6 +44,9 @@ fn every_sampler_and_rule_repeats_itself() {
         "--sampler stratified",
         "--sampler paddedsobol",
         "--sampler zsobol",
+        "--sampler n-rooks",
+        "--sampler multi-jittered",
+        "--sampler halton",
         "--dispersion terminate",
         "--seed 7",
     ] {

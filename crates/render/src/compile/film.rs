@@ -181,7 +181,18 @@ pub(super) fn compile_sampler(cx: &Context<'_>, entity: Option<&Entity>) -> Samp
     let Some(entity) = entity else { return default };
     let params = entity.params("sampler", cx.diagnostics);
     let Some(mapped) = SamplerKind::from_pbrt(&entity.kind) else {
-        let known = ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol"];
+        let known = [
+            "halton",
+            "independent",
+            "jittered",
+            "multi-jittered",
+            "n-rooks",
+            "paddedsobol",
+            "pmj02bn",
+            "sobol",
+            "stratified",
+            "zsobol",
+        ];
         cx.unknown_kind(entity.kind_span, "sampler", &entity.kind, known);
         return default;
     };
@@ -195,7 +206,7 @@ pub(super) fn compile_sampler(cx: &Context<'_>, entity: Option<&Entity>) -> Samp
         }
         n.max(1) as u32
     };
-    let spp = if entity.kind == "stratified" {
+    let spp = if mapped.kind == SamplerKind::Stratified {
         let (x, y) = (count("xsamples", 4), count("ysamples", 4));
         x.checked_mul(y).unwrap_or_else(|| {
             params.error("xsamples", format!("{x} × {y} samples a pixel are too many"));

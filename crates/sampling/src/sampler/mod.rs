@@ -1,16 +1,23 @@
 //! Samplers: from (seed, pixel, sample index, dimension) to numbers in `[0, 1)`.
 
+mod halton;
 mod kind;
+mod multi_jittered;
+mod n_rooks;
 mod padded;
 mod permute;
 mod sobol;
 mod stratified;
+mod stratum;
 mod zsobol;
 
 pub use kind::{Mapped, SamplerKind};
 
 use crate::Dimension;
 use crate::hash::{combine, unit_f32};
+use halton::{Halton, HaltonSample};
+use multi_jittered::{MultiJittered, MultiJitteredSample};
+use n_rooks::NRooksSample;
 use sobol::SobolSample;
 use stratified::{Stratified, StratifiedSample};
 use tenfold_math::{UVec2, Vec2};
@@ -27,6 +34,8 @@ pub struct Sampler {
     samples_per_pixel: u32,
     seed: u64,
     grid: Stratified,
+    multi_jittered: MultiJittered,
+    halton: Halton,
 }
 
 /// One sample of one pixel: asked for numbers by dimension. Cheap to copy.
@@ -44,6 +53,9 @@ enum Pattern {
     Independent,
     Stratified(StratifiedSample),
     Sobol(SobolSample),
+    NRooks(NRooksSample),
+    MultiJittered(MultiJitteredSample),
+    Halton(HaltonSample),
 }
 
 impl Sampler {
@@ -51,7 +63,14 @@ impl Sampler {
     /// of the picture: a crop, and a larger picture, share the samples of the pixels they share.
     pub fn new(kind: SamplerKind, samples_per_pixel: u32, seed: u64) -> Self {
         let samples_per_pixel = samples_per_pixel.max(1);
-        Self { kind, samples_per_pixel, seed, grid: Stratified::new(samples_per_pixel) }
+        Self {
+            kind,
+            samples_per_pixel,
+            seed,
+            grid: Stratified::new(samples_per_pixel),
+            multi_jittered: MultiJittered::new(samples_per_pixel),
+            halton: Halton::new(samples_per_pixel),
+        }
     }
 
     /// Which rule it is.
@@ -75,19 +94,34 @@ impl Sampler {
         let position = u64::from(pixel.y) << 32 | u64::from(pixel.x);
         let pixel_seed = combine(self.seed, position);
         let identity = combine(pixel_seed, u64::from(index));
+        // The seed of the pixel's round and the index in it.
+        let place = || {
+            let (round, index) = self.round(index);
+            (combine(pixel_seed, !round), index)
+        };
+        let rooks = || {
+            let (seed, index) = place();
+            NRooksSample { seed, index, count: self.samples_per_pixel }
+        };
         let pattern = match self.kind {
             SamplerKind::Independent => Pattern::Independent,
             SamplerKind::Stratified => {
-                let (round, index) = self.round(index);
-                Pattern::Stratified(self.grid.at(combine(pixel_seed, !round), index))
+                let (seed, index) = place();
+                Pattern::Stratified(self.grid.at(seed, index))
             }
             SamplerKind::PaddedSobol => {
-                let (round, index) = self.round(index);
-                Pattern::Sobol(padded::at(combine(pixel_seed, !round), index, self.samples_per_pixel))
+                let (seed, index) = place();
+                Pattern::Sobol(padded::at(seed, index, self.samples_per_pixel))
             }
             SamplerKind::ZSobol => {
                 let (round, index) = self.round(index);
                 Pattern::Sobol(zsobol::at(combine(self.seed, !round), pixel, index, self.samples_per_pixel))
+            }
+            SamplerKind::NRooks => Pattern::NRooks(rooks()),
+            SamplerKind::MultiJittered => Pattern::MultiJittered(self.multi_jittered.at(rooks())),
+            SamplerKind::Halton => {
+                let (seed, index) = place();
+                Pattern::Halton(self.halton.at(seed, index))
             }
         };
         PixelSample { pixel, index, identity, pattern }
@@ -122,6 +156,9 @@ impl PixelSample {
             Pattern::Independent => unit_f32(self.hash(dimension) as u32),
             Pattern::Stratified(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_1d(dimension.key()),
+            Pattern::NRooks(s) => s.get_1d(dimension.key(), self.hash(dimension)),
+            Pattern::MultiJittered(s) => s.get_1d(dimension.key(), self.hash(dimension)),
+            Pattern::Halton(s) => s.get_1d(dimension.key()),
         }
     }
 
@@ -135,6 +172,9 @@ impl PixelSample {
             }
             Pattern::Stratified(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_2d(dimension.key()),
+            Pattern::NRooks(s) => s.get_2d(dimension.key(), self.hash(dimension)),
+            Pattern::MultiJittered(s) => s.get_2d(dimension.key(), self.hash(dimension)),
+            Pattern::Halton(s) => s.get_2d(dimension.key(), self.hash(dimension)),
         }
     }
 

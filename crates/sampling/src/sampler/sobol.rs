@@ -73,7 +73,7 @@ fn shuffle(x: u64, h: u64, digits: u64) -> u64 {
 /// Owen-scrambles the fraction whose *lowest* bit is the first (Laine and Karras 2011, with the constants
 /// found by Vegdahl 2021, "Building a Better LK Hash").
 #[inline]
-fn scramble(x: u32, seed: u32) -> u32 {
+pub(super) fn scramble(x: u32, seed: u32) -> u32 {
     let x = x ^ x.wrapping_mul(0x3d20_adea);
     let x = x.wrapping_add(seed).wrapping_mul((seed >> 16) | 1);
     let x = x ^ x.wrapping_mul(0x0552_6c56);
