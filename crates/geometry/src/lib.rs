@@ -23,7 +23,7 @@ mod world;
 pub use cone::NormalCone;
 pub use hit::{Candidate, Hit, InstanceId, PrimitiveId};
 pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};
-pub use mesh::{BilinearMesh, MeshError, MeshParts, TriangleMesh};
+pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
 pub use sample::{ReferencePoint, ShapeSample, SurfacePoint};
 pub use shape::{
     BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Shape, ShapeError, ShapeHit,

@@ -113,6 +113,77 @@ impl MeshParts {
     }
 }
 
+/// Primitives of `N` corners that share vertices, in world space (or in that of an instance).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh<const N: usize> {
+    pub(crate) parts: MeshParts,
+    /// Whether geometric normals are turned around against the order of the vertices: reversed orientation or a mirroring
+    /// transform, but not both.
+    pub(crate) flip: bool,
+}
+
+impl<const N: usize> Mesh<N> {
+    /// A mesh whose `parts` are mapped by `to_world`.
+    ///
+    /// # Errors
+    /// Where indices or attributes do not fit, or a value is not finite, before or after the mapping.
+    pub fn new(parts: MeshParts, to_world: &Transform, reverse_orientation: bool) -> Result<Self, MeshError> {
+        parts.validate(N)?;
+        let parts = parts.transformed(to_world, reverse_orientation);
+        parts.validate(N)?;
+        Ok(Self { parts, flip: reverse_orientation ^ to_world.swaps_handedness() })
+    }
+
+    /// How many primitives there are.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.parts.indices.len() / N
+    }
+
+    /// Whether there is no primitive.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.parts.indices.is_empty()
+    }
+
+    /// The parts, in world space.
+    #[inline]
+    pub fn parts(&self) -> &MeshParts {
+        &self.parts
+    }
+
+    /// Vertex indices of a primitive.
+    #[inline]
+    pub fn corners(&self, primitive: usize) -> [usize; N] {
+        let indices = &self.parts.indices[N * primitive..N * (primitive + 1)];
+        std::array::from_fn(|corner| indices[corner] as usize)
+    }
+
+    /// The values that a vertex attribute has at the corners of a primitive.
+    #[inline]
+    fn at_corners<T: Copy>(&self, primitive: usize, attribute: &[T]) -> [T; N] {
+        self.corners(primitive).map(|vertex| attribute[vertex])
+    }
+
+    /// Vertex positions of a primitive.
+    #[inline]
+    pub fn positions(&self, primitive: usize) -> [Vec3; N] {
+        self.at_corners(primitive, &self.parts.positions)
+    }
+
+    /// Vertex normals of a primitive, of any length.
+    #[inline]
+    pub fn normals(&self, primitive: usize) -> Option<[Vec3; N]> {
+        self.parts.normals.as_ref().map(|n| self.at_corners(primitive, n))
+    }
+
+    /// The face of the file that a primitive came from; 0 where it is not known.
+    #[inline]
+    pub fn face_index(&self, primitive: usize) -> u32 {
+        self.parts.face_indices.as_ref().map_or(0, |f| f[primitive])
+    }
+}
+
 fn finite<T>(attribute: &'static str, values: &[T], is_finite: impl Fn(&T) -> bool) -> Result<(), MeshError> {
     match values.iter().position(|v| !is_finite(v)) {
         Some(at) => Err(MeshError::NotFinite { attribute, at }),

@@ -51,6 +51,21 @@ impl Path {
         }
     }
 
+    /// What the path carries back of the light `emitted` where it now is, weighed against a light sampled at its last vertex
+    /// by the balance heuristic; `light_pdf` is the density with which that vertex samples this light in this direction.
+    #[inline]
+    pub(super) fn carried(
+        &self,
+        emitted: SampledSpectrum,
+        light_pdf: impl FnOnce(&ReferencePoint) -> f32,
+    ) -> SampledSpectrum {
+        let density = match &self.arrival {
+            Arrival::Specular => self.ratio,
+            Arrival::Scattered { from, light_ratio } => self.ratio + *light_ratio * light_pdf(from),
+        };
+        self.beta * emitted / self.lanes.mean(density)
+    }
+
     /// Settles the spectral weights of the path so far, so that from here lanes may part.
     #[inline]
     pub(super) fn settle(&mut self) {

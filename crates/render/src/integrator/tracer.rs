@@ -193,13 +193,8 @@ impl<'a> PathTracer<'a> {
             if emitted.is_black() {
                 continue;
             }
-            let density = match &path.arrival {
-                Arrival::Specular => path.ratio,
-                Arrival::Scattered { from, light_ratio } => {
-                    path.ratio + *light_ratio * lights.pdf_escaped(from, id, path.ray.direction)
-                }
-            };
-            sample.radiance += path.beta * emitted / path.lanes.mean(density);
+            let pdf = |from: &ReferencePoint| lights.pdf_escaped(from, id, path.ray.direction);
+            sample.radiance += path.carried(emitted, pdf);
         }
     }
 
@@ -212,13 +207,8 @@ impl<'a> PathTracer<'a> {
         if emitted.is_black() {
             return;
         }
-        let density = match &path.arrival {
-            Arrival::Specular => path.ratio,
-            Arrival::Scattered { from, light_ratio } => {
-                path.ratio + *light_ratio * lights.pdf_hit(from, id, surface, path.ray.direction)
-            }
-        };
-        sample.radiance += path.beta * emitted / path.lanes.mean(density);
+        let pdf = |from: &ReferencePoint| lights.pdf_hit(from, id, surface, path.ray.direction);
+        sample.radiance += path.carried(emitted, pdf);
     }
 
     /// Light from a point sampled on a light. Where lanes part behind the vertex, each lane weighs its own densities.

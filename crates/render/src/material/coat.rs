@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use tenfold_sampling::mix_bits;
 use tenfold_spectrum::SampledSpectrum;
 
 use super::{Eta, Metal, Point, Roughness, conductor::ComplexIndex};
@@ -57,11 +58,8 @@ impl Coat {
 fn seed(at: &Point<'_>) -> u64 {
     let (p, lambda) = (at.context.p, at.wavelengths.lambda[0]);
     [p.x, p.y, p.z, lambda].iter().fold(0, |hash: u64, v| {
-        // The finaliser of SplitMix64 (Steele et al. 2014) after each.
-        let mut x = (hash ^ u64::from(v.to_bits())).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
+        // The increment of splitmix64 keeps zeros from mapping to zeros.
+        mix_bits((hash ^ u64::from(v.to_bits())).wrapping_add(0x9e37_79b9_7f4a_7c15))
     })
 }
 

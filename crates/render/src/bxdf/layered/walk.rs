@@ -1,5 +1,6 @@
 use tenfold_math::ops;
 use tenfold_math::{Vec2, Vec3};
+use tenfold_sampling::hash::{mix_bits, unit_f32};
 use tenfold_spectrum::SampledSpectrum;
 
 use super::Layered;
@@ -22,20 +23,17 @@ impl WalkRng {
 
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = self.0;
-        let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        mix_bits(self.0)
     }
 
     /// In `[0, 1)`.
     fn f32(&mut self) -> f32 {
-        (self.next() >> 40) as f32 * (1.0 / (1u32 << 24) as f32)
+        unit_f32((self.next() >> 32) as u32)
     }
 
     fn vec2(&mut self) -> Vec2 {
         let bits = self.next();
-        Vec2::new((bits >> 40) as f32, ((bits >> 8) & 0xff_ffff) as f32) * (1.0 / (1u32 << 24) as f32)
+        Vec2::new(unit_f32((bits >> 32) as u32), unit_f32(bits as u32))
     }
 }
 
