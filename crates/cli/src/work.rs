@@ -86,7 +86,7 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     settings.spp = spp.unwrap_or(settings.spp);
     settings.seed = args.seed.unwrap_or(settings.seed);
     if let Some(mapped) = args.sampler {
-        settings.sampler = mapped.kind;
+        settings.sampling = mapped.kind.into();
         if let Some(note) = mapped.note.filter(|_| !args.quiet) {
             say(&format!("note: {note}"));
         }
@@ -148,7 +148,7 @@ fn started(loaded: &Loaded, settings: &RenderSettings, targets: &[Target]) -> se
         "samples_per_pixel": settings.spp,
         "samples": bounds.area() as u64 * settings.spp as u64,
         "seed": settings.seed,
-        "sampler": settings.sampler.name(),
+        "sampler": settings.sampling.to_string(),
     })
 }
 

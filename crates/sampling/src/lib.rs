@@ -13,4 +13,4 @@ pub mod warp;
 pub use dimension::{Dimension, Variable};
 pub use distribution::{AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, sample_discrete};
 pub use hash::{hash, mix_bits};
-pub use sampler::{Mapped, PixelSample, Sampler, SamplerKind};
+pub use sampler::{Draw, Mapped, PixelSample, SamplePlan, Sampler, SamplerKind};

@@ -17,8 +17,8 @@ fn samplers(seed: u64) -> impl Iterator<Item = Sampler> {
     SamplerKind::ALL.into_iter().flat_map(move |kind| COUNTS.map(|n| Sampler::new(kind, n, seed)))
 }
 
-fn round(sampler: &Sampler, pixel: UVec2, round: u32) -> impl Iterator<Item = PixelSample> {
-    let (sampler, n) = (*sampler, sampler.samples_per_pixel());
+fn round(sampler: &Sampler, pixel: UVec2, round: u32) -> impl Iterator<Item = PixelSample<'_>> {
+    let n = sampler.samples_per_pixel();
     (round * n..(round + 1) * n).map(move |i| sampler.at(pixel, i))
 }
 
@@ -49,13 +49,16 @@ fn every_number_is_uniform_over_seeds() {
     for kind in SamplerKind::ALL {
         for n in COUNTS {
             for index in [0, n - 1, n + n / 2] {
-                let at = |seed: u32| Sampler::new(kind, n, u64::from(seed)).at(UVec2::new(13, 7), index);
+                let sampler = |seed: u32| Sampler::new(kind, n, u64::from(seed));
+                let pixel = UVec2::new(13, 7);
                 let tests = 2 * 3 * KINDS * COUNTS.len();
                 let what = format!("{kind:?} {n} {index}");
-                check_pairs(&what, tests, |seed| at(seed).get_2d(Dimension::LENS).into());
+                check_pairs(&what, tests, |seed| {
+                    sampler(seed).at(pixel, index).get_2d(Dimension::LENS).into()
+                });
                 // The number of one dimension, and what is left of it sixteen times finer.
                 check_pairs(&what, tests, |seed| {
-                    let x = at(seed).get_1d(Dimension::TIME);
+                    let x = sampler(seed).at(pixel, index).get_1d(Dimension::TIME);
                     (x, (16.0 * x).fract())
                 });
             }
@@ -82,9 +85,9 @@ fn numbers_are_uniform_over_a_picture() {
         }
         // Multi-jittered pairs of a round share their fine strata by columns and rows: their counts differ from the mean together,
         // and χ² knows no bound for that. The pairs of single samples are tested above.
-        let pairs = (s.kind() != SamplerKind::MultiJittered).then_some(two);
+        let pairs = (s.plan().uniform_kind() != Some(SamplerKind::MultiJittered)).then_some(two);
         for counts in [Some(one), pairs].into_iter().flatten() {
-            let what = format!("{:?} {}", s.kind(), s.samples_per_pixel());
+            let what = format!("{:?} {}", s.plan().uniform_kind(), s.samples_per_pixel());
             chi2::counts_test(&counts, &[total / 256.0; 256], &options(2 * KINDS * COUNTS.len()))
                 .check(&what);
         }
@@ -249,7 +252,8 @@ fn numbers_are_pure() {
         let dimensions: Vec<Dimension> =
             Variable::ALL.iter().flat_map(|&v| [0, 1, 5].map(|b| Dimension::new(v, b))).collect();
         let ask = |x: u32, index: u32, d: Dimension| {
-            let p = Sampler::new(s.kind(), s.samples_per_pixel(), 77).at(UVec2::new(x, 900), index);
+            let again = Sampler::new(*s.plan(), s.samples_per_pixel(), 77);
+            let p = again.at(UVec2::new(x, 900), index);
             (p.get_1d(d).to_bits(), p.get_2d(d).to_array().map(f32::to_bits), p.hash(d))
         };
         for x in [0, 70_000] {
@@ -272,7 +276,8 @@ fn numbers_are_pure() {
 fn numbers_never_change() {
     // Pictures depend on them: a change here is a change of every picture.
     let bits = |kind| {
-        let p = Sampler::new(kind, 16, 1).at(UVec2::new(17, 42), 5);
+        let sampler = Sampler::new(kind, 16, 1);
+        let p = sampler.at(UVec2::new(17, 42), 5);
         let u = p.get_2d(Dimension::light_point(1));
         [p.get_1d(Dimension::TIME), u.x, u.y].map(|x| (x * (1 << 24) as f32) as u32)
     };

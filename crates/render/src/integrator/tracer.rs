@@ -58,7 +58,7 @@ pub struct Workspace {
 /// One sample being traced.
 struct Sample<'a> {
     wavelengths: &'a SampledWavelengths,
-    sampler: &'a PixelSample,
+    sampler: &'a PixelSample<'a>,
     radiance: SampledSpectrum,
     workspace: &'a mut Workspace,
 }
@@ -78,7 +78,7 @@ impl<'a> PathTracer<'a> {
         &self,
         ray: Ray,
         wavelengths: &SampledWavelengths,
-        sampler: &PixelSample,
+        sampler: &PixelSample<'_>,
         workspace: &mut Workspace,
     ) -> SampledSpectrum {
         let mut sample = Sample { wavelengths, sampler, radiance: SampledSpectrum::ZERO, workspace };
@@ -322,7 +322,7 @@ struct Chance(u64);
 
 impl Chance {
     #[inline]
-    fn new(sampler: &PixelSample, bounce: u16) -> Self {
+    fn new(sampler: &PixelSample<'_>, bounce: u16) -> Self {
         Self(sampler.hash(Dimension::alpha(bounce)))
     }
 

@@ -4,10 +4,12 @@
 //! A sample is a pure function of the scene, the seed, the pixel and its index, and the film adds exactly: neither the
 //! cut nor the order nor the number of threads can change the picture.
 
+mod estimator;
 mod render;
 mod settings;
 mod statistics;
 
-pub use render::{Progress, Render, render, sample_radiance};
+pub use estimator::PixelEstimator;
+pub use render::{Progress, Render, render};
 pub use settings::{RenderSettings, TileOrder};
 pub use statistics::{DroppedSample, Statistics};

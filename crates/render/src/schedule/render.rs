@@ -1,7 +1,7 @@
-use super::{DroppedSample, RenderSettings, Statistics, TileOrder};
+use super::{DroppedSample, PixelEstimator, RenderSettings, Statistics, TileOrder};
 use crate::{
     film::{Film, PixelBounds},
-    integrator::{PathTracer, Workspace},
+    integrator::Workspace,
     scene::Scene,
 };
 use std::{
@@ -12,9 +12,7 @@ use std::{
     },
     time::Instant,
 };
-use tenfold_math::{UVec2, Vec2, Vec3};
-use tenfold_sampling::{Dimension, PixelSample, Sampler};
-use tenfold_spectrum::SampledWavelengths;
+use tenfold_sampling::Sampler;
 
 /// Samples of a pixel that one work item takes.
 const BLOCK: u32 = 64;
@@ -57,8 +55,8 @@ pub fn render(
     let next = AtomicUsize::new(0);
     let stop = AtomicBool::new(false);
     let shared = Mutex::new((Film::new(settings.bounds), Statistics::default()));
-    let sampler = Sampler::new(settings.sampler, settings.spp, settings.seed);
-    let tracer = PathTracer::new(scene, settings.dispersion, settings.spp);
+    let sampler = Sampler::new(settings.sampling, settings.spp, settings.seed);
+    let estimator = PixelEstimator::new(scene, settings);
     let work = || {
         while !stop.load(Ordering::Relaxed) {
             let item = next.fetch_add(1, Ordering::Relaxed);
@@ -69,7 +67,7 @@ pub fn render(
             let tile = tiles[item % tiles.len()];
             let first = (item / tiles.len()) as u32 * BLOCK;
             let last = first.saturating_add(BLOCK).min(settings.spp);
-            let (film, statistics) = render_item(scene, &tracer, &sampler, tile, first..last);
+            let (film, statistics) = render_item(&estimator, &sampler, tile, first..last);
             let mut shared = shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
             shared.0.merge(&film);
             shared.1.merge(statistics);
@@ -96,27 +94,9 @@ pub fn render(
     Render { film, complete: statistics.samples == total, statistics }
 }
 
-/// The linear RGB of one sample, which may not be finite, with its filter weight in.
-pub fn sample_radiance(
-    scene: &Scene,
-    tracer: &PathTracer<'_>,
-    sampler: &PixelSample,
-    pixel: UVec2,
-    workspace: &mut Workspace,
-) -> Vec3 {
-    let filtered = scene.filter.sample(sampler.get_2d(Dimension::PIXEL));
-    let position = pixel.as_vec2() + Vec2::splat(0.5) + filtered.offset;
-    let wavelengths = SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH));
-    let u_lens = sampler.get_2d(Dimension::LENS);
-    let ray = scene.camera.ray(position, u_lens, sampler.get_1d(Dimension::TIME));
-    let radiance = tracer.radiance(ray, &wavelengths, sampler, workspace);
-    scene.film.sensor.rgb(radiance, &wavelengths) * filtered.weight
-}
-
 /// Takes the samples with indices in `indices` of every pixel of `tile`.
 fn render_item(
-    scene: &Scene,
-    tracer: &PathTracer<'_>,
+    estimator: &PixelEstimator<'_>,
     sampler: &Sampler,
     tile: PixelBounds,
     indices: std::ops::Range<u32>,
@@ -127,7 +107,7 @@ fn render_item(
     for pixel in tile.pixels() {
         let sum = film.pixel_mut(pixel);
         for index in indices.clone() {
-            let rgb = sample_radiance(scene, tracer, &sampler.at(pixel, index), pixel, &mut workspace);
+            let rgb = estimator.sample(&sampler.at(pixel, index), &mut workspace);
             if !sum.add(rgb) {
                 statistics.drop_sample(DroppedSample { pixel, index });
             }

@@ -1,6 +1,6 @@
 use crate::{film::PixelBounds, integrator::DispersionRule, scene::Scene};
 use std::num::NonZeroUsize;
-use tenfold_sampling::SamplerKind;
+use tenfold_sampling::SamplePlan;
 
 /// In which order tiles are rendered. The picture is the same for all.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -17,8 +17,8 @@ pub enum TileOrder {
 /// What a render does, beyond what the scene says.
 #[derive(Clone, Debug)]
 pub struct RenderSettings {
-    /// Which sampler.
-    pub sampler: SamplerKind,
+    /// How the numbers of each variable are drawn.
+    pub sampling: SamplePlan,
     /// Samples a pixel.
     pub spp: u32,
     /// Distinguishes renders of the same scene.
@@ -39,7 +39,7 @@ impl RenderSettings {
     /// What the scene itself asks for.
     pub fn of(scene: &Scene) -> Self {
         Self {
-            sampler: scene.sampler.kind,
+            sampling: scene.sampler.kind.into(),
             spp: scene.sampler.spp,
             seed: scene.sampler.seed,
             bounds: scene.film.bounds,

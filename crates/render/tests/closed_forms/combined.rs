@@ -21,8 +21,8 @@ pub(crate) fn everything() -> Scene {
 #[test]
 fn samplers_agree_in_the_mean() {
     let scene = everything();
-    let picture = |kind, spp, seed| {
-        let film = film(&scene, |s| (s.sampler, s.spp, s.seed) = (kind, spp, seed));
+    let picture = |kind: SamplerKind, spp, seed| {
+        let film = film(&scene, |s| (s.sampling, s.spp, s.seed) = (kind.into(), spp, seed));
         channels(&film.means())
     };
     let independent = picture(SamplerKind::Independent, 512, 1);

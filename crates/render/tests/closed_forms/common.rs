@@ -8,7 +8,7 @@ use tenfold_render::compile::compile;
 use tenfold_render::film::Film;
 use tenfold_render::integrator::{DispersionRule, PathTracer, Workspace};
 use tenfold_render::scene::Scene;
-use tenfold_render::schedule::{RenderSettings, render, sample_radiance};
+use tenfold_render::schedule::{PixelEstimator, RenderSettings, render};
 use tenfold_sampling::{Sampler, SamplerKind};
 use tenfold_scene::{Resources, SourceMap, read_pbrt_str};
 use tenfold_spectrum::{N, SampledWavelengths};
@@ -109,12 +109,11 @@ pub(crate) fn ray(origin: Vec3, direction: Vec3) -> Ray {
 
 /// Moments of the luminance of every pixel, by independent samples.
 pub(crate) fn luminance(scene: &Scene, spp: u32, seed: u64) -> Vec<Welford> {
-    let tracer = PathTracer::new(scene, DispersionRule::Split, spp);
+    let estimator = PixelEstimator::new(scene, &RenderSettings { spp, ..RenderSettings::of(scene) });
     let sampler = Sampler::new(SamplerKind::Independent, spp, seed);
     let mut workspace = Workspace::default();
     let moments = |pixel| {
-        let sample =
-            |index| sample_radiance(scene, &tracer, &sampler.at(pixel, index), pixel, &mut workspace);
+        let sample = |index| estimator.sample(&sampler.at(pixel, index), &mut workspace);
         (0..spp).map(sample).map(luma).collect()
     };
     scene.film.bounds.pixels().map(moments).collect()

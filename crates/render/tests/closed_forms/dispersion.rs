@@ -39,7 +39,9 @@ fn strips(glass: &str, depth: u32) -> Scene {
 const F11: &str = r#""spectrum eta" "glass-F11""#;
 
 fn render(scene: &Scene, rule: DispersionRule, spp: u32, seed: u64) -> Film {
-    film(scene, |s| (s.dispersion, s.sampler, s.spp, s.seed) = (rule, SamplerKind::PaddedSobol, spp, seed))
+    film(scene, |s| {
+        (s.dispersion, s.sampling, s.spp, s.seed) = (rule, SamplerKind::PaddedSobol.into(), spp, seed)
+    })
 }
 
 /// Whether any sample of a pixel can meet glass first: whether a fine grid of rays through it, and just beyond, does.

@@ -21,7 +21,7 @@ fn check(what: &str, lamp: &str, want: [f64; 3], tolerance: f64) {
         ReverseOrientation AreaLightSource "diffuse" {lamp} Translate 0 0 2 Shape "disk" "float radius" 5"#
     ));
     let film = film(&scene, |s| {
-        (s.sampler, s.spp) = (SamplerKind::PaddedSobol, 1024);
+        (s.sampling, s.spp) = (SamplerKind::PaddedSobol.into(), 1024);
     });
     for channel in 0..3 {
         let pixels: Welford = film.means().iter().map(|p| f64::from(p[channel])).collect();

@@ -6,15 +6,17 @@ mod multi_jittered;
 mod n_rooks;
 mod padded;
 mod permute;
+mod plan;
 mod sobol;
 mod stratified;
 mod stratum;
 mod zsobol;
 
 pub use kind::{Mapped, SamplerKind};
+pub use plan::{Draw, SamplePlan};
 
-use crate::Dimension;
 use crate::hash::{combine, unit_f32};
+use crate::{Dimension, Variable};
 use halton::{Halton, HaltonSample};
 use multi_jittered::{MultiJittered, MultiJitteredSample};
 use n_rooks::NRooksSample;
@@ -28,9 +30,11 @@ use tenfold_math::{UVec2, Vec2};
 /// Indices from 0 to `samples_per_pixel - 1` form a round, in which the pattern is balanced; any further
 /// indices form further rounds of the same kind, independent of each other. Every number by itself is
 /// uniform over seeds, whatever the count of samples.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Sampler {
-    kind: SamplerKind,
+    plan: SamplePlan,
+    /// The sampler of all variables, where the plan has but one.
+    kind: Option<SamplerKind>,
     samples_per_pixel: u32,
     seed: u64,
     grid: Stratified,
@@ -39,32 +43,42 @@ pub struct Sampler {
 }
 
 /// One sample of one pixel: asked for numbers by dimension. Cheap to copy.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct PixelSample {
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct PixelSample<'a> {
     pixel: UVec2,
     index: u32,
     /// Hash of the seed, the pixel and the index.
     identity: u64,
-    pattern: Pattern,
+    pattern: Pattern<'a>,
 }
 
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-enum Pattern {
+#[derive(Copy, Clone, Debug, PartialEq)]
+enum Pattern<'a> {
     Independent,
     Stratified(StratifiedSample),
     Sobol(SobolSample),
     NRooks(NRooksSample),
     MultiJittered(MultiJitteredSample),
     Halton(HaltonSample),
+    /// Every variable in its own way, found out when it is asked for.
+    Planned(&'a Sampler),
+}
+
+/// A variable by itself under a plan.
+enum Alone<'a> {
+    Drawn(PixelSample<'a>),
+    Held(Vec2),
 }
 
 impl Sampler {
     /// A sampler for `samples_per_pixel` samples a round (at least one). The pattern does not depend on the size
     /// of the picture: a crop, and a larger picture, share the samples of the pixels they share.
-    pub fn new(kind: SamplerKind, samples_per_pixel: u32, seed: u64) -> Self {
+    pub fn new(plan: impl Into<SamplePlan>, samples_per_pixel: u32, seed: u64) -> Self {
         let samples_per_pixel = samples_per_pixel.max(1);
+        let plan = plan.into();
         Self {
-            kind,
+            plan,
+            kind: plan.uniform_kind(),
             samples_per_pixel,
             seed,
             grid: Stratified::new(samples_per_pixel),
@@ -73,9 +87,9 @@ impl Sampler {
         }
     }
 
-    /// Which rule it is.
-    pub fn kind(&self) -> SamplerKind {
-        self.kind
+    /// How it draws each variable.
+    pub fn plan(&self) -> &SamplePlan {
+        &self.plan
     }
 
     /// Samples of a pixel in one round.
@@ -90,9 +104,21 @@ impl Sampler {
 
     /// The sample `index` of `pixel`; any index is good.
     #[inline]
-    pub fn at(&self, pixel: UVec2, index: u32) -> PixelSample {
+    pub fn at(&self, pixel: UVec2, index: u32) -> PixelSample<'_> {
+        match self.kind {
+            Some(kind) => self.by(kind, self.seed, pixel, index),
+            None => {
+                let by_hash = self.by(SamplerKind::Independent, self.seed, pixel, index);
+                PixelSample { pattern: Pattern::Planned(self), ..by_hash }
+            }
+        }
+    }
+
+    /// The sample with all variables drawn by `kind`.
+    #[inline]
+    fn by(&self, kind: SamplerKind, seed: u64, pixel: UVec2, index: u32) -> PixelSample<'_> {
         let position = u64::from(pixel.y) << 32 | u64::from(pixel.x);
-        let pixel_seed = combine(self.seed, position);
+        let pixel_seed = combine(seed, position);
         let identity = combine(pixel_seed, u64::from(index));
         // The seed of the pixel's round and the index in it.
         let place = || {
@@ -103,7 +129,7 @@ impl Sampler {
             let (seed, index) = place();
             NRooksSample { seed, index, count: self.samples_per_pixel }
         };
-        let pattern = match self.kind {
+        let pattern = match kind {
             SamplerKind::Independent => Pattern::Independent,
             SamplerKind::Stratified => {
                 let (seed, index) = place();
@@ -115,7 +141,7 @@ impl Sampler {
             }
             SamplerKind::ZSobol => {
                 let (round, index) = self.round(index);
-                Pattern::Sobol(zsobol::at(combine(self.seed, !round), pixel, index, self.samples_per_pixel))
+                Pattern::Sobol(zsobol::at(combine(seed, !round), pixel, index, self.samples_per_pixel))
             }
             SamplerKind::NRooks => Pattern::NRooks(rooks()),
             SamplerKind::MultiJittered => Pattern::MultiJittered(self.multi_jittered.at(rooks())),
@@ -125,6 +151,20 @@ impl Sampler {
             }
         };
         PixelSample { pixel, index, identity, pattern }
+    }
+
+    /// One variable of the sample, as the plan has it.
+    fn alone(&self, variable: Variable, pixel: UVec2, index: u32) -> Alone<'_> {
+        match self.plan.draw(variable) {
+            Draw::Held(value) => Alone::Held(value),
+            Draw::By(kind) => {
+                let seed = match self.plan.stream(variable) {
+                    0 => self.seed,
+                    stream => combine(self.seed, !u64::from(stream)),
+                };
+                Alone::Drawn(self.by(kind, seed, pixel, index))
+            }
+        }
     }
 
     #[inline]
@@ -138,7 +178,7 @@ impl Sampler {
     }
 }
 
-impl PixelSample {
+impl PixelSample<'_> {
     /// The pixel.
     pub fn pixel(&self) -> UVec2 {
         self.pixel
@@ -159,6 +199,10 @@ impl PixelSample {
             Pattern::NRooks(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_1d(dimension.key()),
+            Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
+                Alone::Drawn(s) => s.get_1d(dimension),
+                Alone::Held(value) => value.x,
+            },
         }
     }
 
@@ -175,12 +219,24 @@ impl PixelSample {
             Pattern::NRooks(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_2d(dimension.key(), self.hash(dimension)),
+            Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
+                Alone::Drawn(s) => s.get_2d(dimension),
+                Alone::Held(value) => value,
+            },
         }
     }
 
     /// 64 random bits of a dimension, without any pattern over samples: to seed what needs many numbers.
     #[inline]
     pub fn hash(&self, dimension: Dimension) -> u64 {
-        combine(self.identity, u64::from(dimension.key()))
+        let identity = match &self.pattern {
+            Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
+                Alone::Drawn(s) => s.identity,
+                // Held walks are the same in all samples of all pixels.
+                Alone::Held(_) => 0,
+            },
+            _ => self.identity,
+        };
+        combine(identity, u64::from(dimension.key()))
     }
 }

@@ -1,0 +1,34 @@
+use super::RenderSettings;
+use crate::{
+    integrator::{PathTracer, Workspace},
+    scene::Scene,
+};
+use tenfold_math::{Vec2, Vec3};
+use tenfold_sampling::{Dimension, PixelSample};
+use tenfold_spectrum::SampledWavelengths;
+
+/// The estimator of a pixel's integral: one sample of all its variables, from the film to the light.
+#[derive(Copy, Clone, Debug)]
+pub struct PixelEstimator<'a> {
+    scene: &'a Scene,
+    tracer: PathTracer<'a>,
+}
+
+impl<'a> PixelEstimator<'a> {
+    /// An estimator of the pixels of `scene`, under those of `settings` that concern a sample.
+    pub fn new(scene: &'a Scene, settings: &RenderSettings) -> Self {
+        Self { scene, tracer: PathTracer::new(scene, settings.dispersion, settings.spp) }
+    }
+
+    /// The linear RGB of one sample, which may not be finite, with its filter weight in.
+    pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace) -> Vec3 {
+        let scene = self.scene;
+        let filtered = scene.filter.sample(sampler.get_2d(Dimension::PIXEL));
+        let position = sampler.pixel().as_vec2() + Vec2::splat(0.5) + filtered.offset;
+        let wavelengths = SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH));
+        let u_lens = sampler.get_2d(Dimension::LENS);
+        let ray = scene.camera.ray(position, u_lens, sampler.get_1d(Dimension::TIME));
+        let radiance = self.tracer.radiance(ray, &wavelengths, sampler, workspace);
+        scene.film.sensor.rgb(radiance, &wavelengths) * filtered.weight
+    }
+}
