@@ -4,6 +4,7 @@
 //! [`Scene`] only where there is none.
 
 mod camera;
+mod coarsen;
 mod context;
 mod film;
 mod light;
@@ -14,6 +15,7 @@ mod shape;
 mod texture;
 
 use crate::{light::Lights, scene::Scene};
+pub use coarsen::coarsen;
 use context::Context;
 pub use film::crop_window;
 use shape::Shapes;
