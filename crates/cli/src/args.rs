@@ -1,6 +1,11 @@
 //! The command line.
 
-use crate::{failure::Failure, pbrt_options, progress::Style};
+use crate::{
+    failure::Failure,
+    pbrt_options,
+    progress::Style,
+    strategy::{self, Strategy},
+};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum, builder::styling};
 use std::{ffi::OsString, path::PathBuf};
 use tenfold_render::{integrator::DispersionRule, schedule};
@@ -91,6 +96,13 @@ pub(crate) struct Args {
     /// says]
     #[arg(long, value_name = "NAME", value_parser = sampler, help_heading = "Sampling")]
     pub(crate) sampler: Option<Mapped>,
+
+    /// How lights and directions are sampled; the picture is the same for all but for its noise. Several with commas between:
+    /// light=uniform-area, solid-angle or by-texture; scatter=uniform, cosine or bsdf; combine=mis, light-only or bsdf-only
+    /// [default: the last of light and scatter, the first of combine]
+    #[arg(long, value_name = "VARIABLE=NAME", value_parser = strategy::parse, value_delimiter = ',',
+          help_heading = "Sampling")]
+    pub(crate) strategy: Vec<Strategy>,
 
     /// What the other wavelengths do at dispersive glass: go ways of their own, or end there as in pbrt
     #[arg(long, value_name = "RULE", value_enum, default_value = "split", help_heading = "Sampling")]
@@ -273,6 +285,8 @@ mod tests {
             "--pixel 1,1 --pixelbounds 0,1,0,1",
             "--sampler zsobl",
             "--dispersion other",
+            "--strategy light=dark",
+            "--strategy scatter=bsdf,combine",
             "--tile-size 0",
             "--nthreads -1",
             "--no-such-option",
@@ -283,6 +297,13 @@ mod tests {
             assert_eq!(failure.code(), 2, "{line}");
         }
         assert!(parsed("--sampler zsobl").unwrap_err().message().contains("zsobol"));
+    }
+
+    #[test]
+    fn strategies_come_in_lists_and_one_by_one() {
+        let one_by_one = parsed("--strategy light=solid-angle -strategy combine=mis").unwrap().strategy;
+        assert_eq!(one_by_one.len(), 2);
+        assert_eq!(parsed("--strategy light=solid-angle,combine=mis").unwrap().strategy, one_by_one);
     }
 
     #[test]

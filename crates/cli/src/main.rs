@@ -15,6 +15,7 @@ mod output;
 mod pbrt_options;
 mod progress;
 mod report;
+mod strategy;
 mod units;
 mod work;
 

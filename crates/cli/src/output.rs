@@ -129,6 +129,7 @@ impl Picture<'_> {
             ("scene", Attribute::Text(latin1(self.scene_name))),
             ("seed", Attribute::Text(self.settings.seed.to_string())),
             ("sampler", Attribute::Text(self.settings.sampling.to_string())),
+            ("strategy", Attribute::Text(self.settings.strategies.to_string())),
             ("samplesPerPixel", Attribute::I32(self.settings.spp.min(i32::MAX as u32) as i32)),
             ("renderTimeSeconds", Attribute::F32(statistics.seconds as f32)),
         ]);

@@ -95,6 +95,7 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     settings.tile_side = args.tile_size;
     settings.tile_order = args.tile_order.into();
     settings.dispersion = args.dispersion.into();
+    args.strategy.iter().for_each(|strategy| strategy.apply(&mut settings.strategies));
     if let Some(bounds) = asked_bounds(args, resolution) {
         if bounds.is_empty() {
             return Err(Failure::Wrong(format!(
@@ -149,6 +150,7 @@ fn started(loaded: &Loaded, settings: &RenderSettings, targets: &[Target]) -> se
         "samples": bounds.area() as u64 * settings.spp as u64,
         "seed": settings.seed,
         "sampler": settings.sampling.to_string(),
+        "strategy": settings.strategies.to_string(),
     })
 }
 

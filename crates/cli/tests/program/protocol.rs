@@ -15,11 +15,12 @@ fn events(run: &Run) -> Vec<Value> {
 #[test]
 fn a_render_starts_and_completes() {
     let place = Place::new();
-    let run = place.succeed("scene.pbrt --progress json -o a.exr -o b.png");
+    let run = place.succeed("scene.pbrt --progress json -o a.exr -o b.png --strategy scatter=cosine");
     let events = events(&run);
     let (first, last) = (&events[0], events.last().unwrap());
     assert_eq!((&first["event"], &first["scene"]), (&"started".into(), &"scene.pbrt".into()));
     assert_eq!(first["samples"], 23 * 17 * 3);
+    assert_eq!(first["strategy"], "light=by-texture,scatter=cosine,combine=mis");
     assert_eq!(last["event"], "completed");
     assert_eq!(last["outputs"], serde_json::json!(["a.exr", "b.png"]));
     assert_eq!(last["samples"], 23 * 17 * 3);

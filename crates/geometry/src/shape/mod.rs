@@ -17,6 +17,7 @@ pub use triangle::Triangle;
 
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
+    sample::pdf_by_solid_angle,
 };
 use std::sync::Arc;
 use tenfold_math::{Bounds3, Ray, Vec2, Vec3};
@@ -145,6 +146,17 @@ impl Primitive<'_> {
     /// Density by area of [`Primitive::sample_area`] at a point of the surface.
     pub fn pdf_area(&self, point: &SurfacePoint) -> f32 {
         dispatch!(self, s => s.pdf_area(point))
+    }
+
+    /// [`Primitive::sample_area`] with its density by solid angle at `reference`; `None` also where the point cannot be
+    /// seen from there, being edge-on or at the same place.
+    pub fn sample_area_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
+        self.sample_area(u)?.by_solid_angle(reference)
+    }
+
+    /// Density by solid angle of [`Primitive::sample_area_from`] for the direction to a known point of the surface.
+    pub fn pdf_area_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n)
     }
 
     /// A point on the surface chosen for its view from `reference`; its density is by solid angle there. The point

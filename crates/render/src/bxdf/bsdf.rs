@@ -1,21 +1,29 @@
 use tenfold_math::{Frame, Vec2, Vec3};
 use tenfold_spectrum::SampledSpectrum;
 
-use super::Bxdf;
-use super::record::{BsdfSample, Lobe};
+use super::record::{BsdfSample, Lobe, Scattering};
+use super::{Bxdf, Hemispheres, ScatterStrategy};
 
 /// A [`Bxdf`] at a point of a surface: the same methods on directions in the world.
 #[derive(Copy, Clone, Debug)]
 pub struct Bsdf<'a> {
     frame: Frame,
     bxdf: Bxdf<'a>,
+    strategy: ScatterStrategy,
 }
 
 impl<'a> Bsdf<'a> {
     /// Puts `bxdf` in the shading frame `frame`, whose z is the shading normal.
     #[inline]
     pub fn new(frame: Frame, bxdf: Bxdf<'a>) -> Self {
-        Self { frame, bxdf }
+        Self { frame, bxdf, strategy: ScatterStrategy::Bsdf }
+    }
+
+    /// The same, with directions sampled by `strategy`.
+    #[inline]
+    #[must_use]
+    pub fn sampled_by(self, strategy: ScatterStrategy) -> Self {
+        Self { strategy, ..self }
     }
 
     /// The shading frame.
@@ -42,10 +50,11 @@ impl<'a> Bsdf<'a> {
         self.bxdf.is_dispersive()
     }
 
-    /// As [`Bxdf::parts_wavelengths`].
+    /// As [`Bxdf::parts_wavelengths`]; directions that are not chosen by the scattering function serve all lanes alike.
     #[inline]
     pub fn parts_wavelengths(&self) -> bool {
         self.bxdf.parts_wavelengths()
+            && (self.strategy == ScatterStrategy::Bsdf || !self.lobes().has_density())
     }
 
     /// The BSDF per lane in sr⁻¹, without the cosine; 0 of specular lobes. As [`Bxdf::eval`].
@@ -57,19 +66,34 @@ impl<'a> Bsdf<'a> {
     /// Density per lane of [`Bsdf::sample`] in solid angle. As [`Bxdf::pdf`].
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> SampledSpectrum {
-        self.bxdf.pdf(self.frame.to_local(wo), self.frame.to_local(wi))
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        match Hemispheres::new(self.strategy, &self.bxdf, wo) {
+            None => self.bxdf.pdf(wo, wi),
+            Some(hemispheres) => hemispheres.scattering(&self.bxdf, wo, wi).pdf,
+        }
     }
 
     /// [`Bsdf::eval`] and [`Bsdf::pdf`] in one: the price of one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        self.bxdf.eval_and_pdf(self.frame.to_local(wo), self.frame.to_local(wi))
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        match Hemispheres::new(self.strategy, &self.bxdf, wo) {
+            None => self.bxdf.eval_and_pdf(wo, wi),
+            Some(hemispheres) => {
+                let Scattering { f, pdf } = hemispheres.scattering(&self.bxdf, wo, wi);
+                BsdfValue { f, pdf }
+            }
+        }
     }
 
     /// Samples a direction; `hero` is the lane that decides. As [`Bxdf::sample`].
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2, hero: usize) -> Option<BsdfSample> {
-        let mut sample = self.bxdf.sample(self.frame.to_local(wo), u_lobe, u, hero)?;
+        let wo = self.frame.to_local(wo);
+        let mut sample = match Hemispheres::new(self.strategy, &self.bxdf, wo) {
+            None => self.bxdf.sample(wo, u_lobe, u, hero),
+            Some(hemispheres) => hemispheres.sample(&self.bxdf, wo, u_lobe, u, hero),
+        }?;
         sample.wi = self.frame.to_world(sample.wi);
         Some(sample)
     }

@@ -85,6 +85,15 @@ impl<'a> CoatedDiffuse<'a> {
         if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }
 
+    /// Probability of the delta of a smooth coat.
+    pub(crate) fn delta_probability(&self, wo: Vec3) -> f32 {
+        if !self.coat.lobes().is_specular() {
+            return 0.0;
+        }
+        let wo = wo * 1f32.copysign(wo.z);
+        self.coat_probability(&self.table.fluxes(self.eta, &self.distribution, wo))
+    }
+
     #[inline]
     pub(crate) fn scattering(&self, wo: Vec3, wi: Vec3) -> Scattering<SampledSpectrum> {
         let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };

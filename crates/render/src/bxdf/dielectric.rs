@@ -41,7 +41,7 @@ impl Dielectric {
 
     /// Index of the far side over that of the side of `wo`, per lane.
     #[inline]
-    fn eta_from(&self, wo: Vec3) -> SampledSpectrum {
+    pub(crate) fn eta_from(&self, wo: Vec3) -> SampledSpectrum {
         if wo.z >= 0.0 { self.eta } else { 1.0 / self.eta }
     }
 

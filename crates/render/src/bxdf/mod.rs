@@ -21,6 +21,7 @@ mod local;
 mod microfacet;
 mod phase;
 mod record;
+mod strategy;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
@@ -40,9 +41,11 @@ pub use layered::{Layered, LayeredBase, Slab};
 pub use local::{reflect, refract};
 pub use microfacet::TrowbridgeReitz;
 pub use record::{BsdfSample, Lobe};
+pub use strategy::ScatterStrategy;
 pub use thin_dielectric::ThinDielectric;
 
 use record::Scattering;
+use strategy::Hemispheres;
 
 /// Directions with a cosine below this lie in the surface: values over the cosine stay finite.
 const HORIZON: f32 = 1e-30;
@@ -91,6 +94,28 @@ impl Bxdf<'_> {
     #[inline]
     pub fn parts_wavelengths(&self) -> bool {
         matches!(self, Self::Dielectric(b) if b.parts_wavelengths())
+    }
+
+    /// Probability with which [`Bxdf::sample`] samples a delta from `wo`, by numbers `u_lobe` below it, where it has a
+    /// density beside it: the same in all lanes.
+    fn delta_probability(&self, wo: Vec3) -> f32 {
+        match self {
+            Self::CoatedDiffuse(b) => b.delta_probability(wo),
+            Self::Layered(b) => b.delta_probability(wo),
+            Self::Diffuse(_)
+            | Self::DiffuseTransmission(_)
+            | Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::ThinDielectric(_) => 0.0,
+        }
+    }
+
+    /// Index of refraction in lane `hero` of the far side over that of the side of `wo`, as [`BsdfSample::eta`].
+    fn transmitted_eta(&self, wo: Vec3, hero: usize) -> f32 {
+        match self {
+            Self::Dielectric(b) => b.eta_from(wo).lane(hero),
+            _ => 1.0,
+        }
     }
 
     /// Value and density together; both 0 of specular lobes, and at the horizon.

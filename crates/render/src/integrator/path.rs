@@ -1,4 +1,5 @@
-use super::spectral::Lanes;
+use super::{CombineStrategy, spectral::Lanes};
+use crate::light::LightSample;
 use tenfold_geometry::ReferencePoint;
 use tenfold_math::Ray;
 use tenfold_spectrum::SampledSpectrum;
@@ -51,19 +52,41 @@ impl Path {
         }
     }
 
-    /// What the path carries back of the light `emitted` where it now is, weighed against a light sampled at its last vertex
-    /// by the balance heuristic; `light_pdf` is the density with which that vertex samples this light in this direction.
+    /// What the path carries back of the light `emitted` where it now is, weighed against a light sampled at its last vertex;
+    /// `light_pdf` is the density with which that vertex samples this light in this direction.
     #[inline]
     pub(super) fn carried(
         &self,
+        combine: CombineStrategy,
         emitted: SampledSpectrum,
         light_pdf: impl FnOnce(&ReferencePoint) -> f32,
     ) -> SampledSpectrum {
         let density = match &self.arrival {
             Arrival::Specular => self.ratio,
-            Arrival::Scattered { from, light_ratio } => self.ratio + *light_ratio * light_pdf(from),
+            Arrival::Scattered { from, light_ratio } => match combine {
+                CombineStrategy::Mis => self.ratio + *light_ratio * light_pdf(from),
+                CombineStrategy::LightOnly if light_pdf(from) > 0.0 => return SampledSpectrum::ZERO,
+                CombineStrategy::LightOnly | CombineStrategy::BsdfOnly => self.ratio,
+            },
         };
         self.beta * emitted / self.lanes.mean(density)
+    }
+
+    /// Per lane, the density by which to divide light that was sampled at the vertex where the path is, weighed against a
+    /// scattered direction that meets it by itself with density `scatter_pdf`; `None` where the latter alone counts.
+    #[inline]
+    pub(super) fn density_of_sampled(
+        &self,
+        combine: CombineStrategy,
+        light: &LightSample,
+        scatter_pdf: SampledSpectrum,
+    ) -> Option<SampledSpectrum> {
+        match combine {
+            _ if light.delta => Some(self.ratio * light.pdf),
+            CombineStrategy::Mis => Some(self.ratio * (SampledSpectrum::splat(light.pdf) + scatter_pdf)),
+            CombineStrategy::LightOnly => Some(self.ratio * light.pdf),
+            CombineStrategy::BsdfOnly => None,
+        }
     }
 
     /// Settles the spectral weights of the path so far, so that from here lanes may part.

@@ -1,4 +1,5 @@
 use super::{
+    Strategies,
     path::{Arrival, Path},
     spectral::{DispersionRule, Lanes},
 };
@@ -43,6 +44,7 @@ impl RayCounts {
 pub struct PathTracer<'a> {
     scene: &'a Scene,
     rule: DispersionRule,
+    strategies: Strategies,
     footprint_scale: f32,
 }
 
@@ -65,10 +67,10 @@ struct Sample<'a> {
 
 impl<'a> PathTracer<'a> {
     /// A tracer of `scene` for renders with `spp` samples a pixel.
-    pub fn new(scene: &'a Scene, rule: DispersionRule, spp: u32) -> Self {
+    pub fn new(scene: &'a Scene, rule: DispersionRule, strategies: Strategies, spp: u32) -> Self {
         // Many samples average detail by themselves: narrow the footprint of each, as pbrt does.
         let footprint_scale = (1.0 / (spp.max(1) as f32).sqrt()).max(0.125);
-        Self { scene, rule, footprint_scale }
+        Self { scene, rule, strategies, footprint_scale }
     }
 
     /// An estimate of the spectral radiance that arrives along `ray`, against its direction, in the lanes of
@@ -174,7 +176,9 @@ impl<'a> PathTracer<'a> {
             }
         };
         let material = self.look(surface).material;
-        scene.materials.bsdf(material, &scene.textures, surface, &at, sample.wavelengths, u_mix)
+        let bsdf =
+            scene.materials.bsdf(material, &scene.textures, surface, &at, sample.wavelengths, u_mix)?;
+        Some(bsdf.sampled_by(self.strategies.scatter))
     }
 
     /// What a surface that was hit looks like.
@@ -193,8 +197,9 @@ impl<'a> PathTracer<'a> {
             if emitted.is_black() {
                 continue;
             }
-            let pdf = |from: &ReferencePoint| lights.pdf_escaped(from, id, path.ray.direction);
-            sample.radiance += path.carried(emitted, pdf);
+            let direction = path.ray.direction;
+            let pdf = |from: &ReferencePoint| lights.pdf_escaped(self.strategies.light, from, id, direction);
+            sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
         }
     }
 
@@ -207,8 +212,9 @@ impl<'a> PathTracer<'a> {
         if emitted.is_black() {
             return;
         }
-        let pdf = |from: &ReferencePoint| lights.pdf_hit(from, id, surface, path.ray.direction);
-        sample.radiance += path.carried(emitted, pdf);
+        let direction = path.ray.direction;
+        let pdf = |from: &ReferencePoint| lights.pdf_hit(self.strategies.light, from, id, surface, direction);
+        sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
     }
 
     /// Light from a point sampled on a light. Where lanes part behind the vertex, each lane weighs its own densities.
@@ -224,8 +230,11 @@ impl<'a> PathTracer<'a> {
     ) {
         let u_choice = sample.sampler.get_1d(Dimension::light_choice(path.bounce));
         let u = sample.sampler.get_2d(Dimension::light_point(path.bounce));
-        let Some(light) = self.scene.lights.sample(from, u_choice, u, sample.wavelengths) else { return };
+        let Strategies { light: strategy, combine, .. } = self.strategies;
+        let lights = &self.scene.lights;
+        let Some(light) = lights.sample(strategy, from, u_choice, u, sample.wavelengths) else { return };
         let scattering = bsdf.eval_and_pdf(surface.wo, light.wi);
+        let Some(density) = path.density_of_sampled(combine, &light, scattering.pdf) else { return };
         let cos = light.wi.dot(bsdf.frame().z).abs();
         let contribution = path.beta * scattering.f * light.radiance * cos;
         if contribution.is_black() {
@@ -235,11 +244,6 @@ impl<'a> PathTracer<'a> {
         if self.is_shadowed(from, &light, Chance::new(sample.sampler, path.bounce)) {
             return;
         }
-        let density = if light.delta {
-            path.ratio * light.pdf
-        } else {
-            path.ratio * (SampledSpectrum::splat(light.pdf) + scattering.pdf)
-        };
         sample.radiance +=
             if parts { contribution.safe_div(density) } else { contribution / path.lanes.mean(density) };
     }

@@ -1,7 +1,7 @@
 //! Light from the surface of a shape.
 
 use super::area_image::AreaImage;
-use super::{Emission, LightBounds, LightSample, ShadowTarget};
+use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
 use tenfold_geometry::{NormalCone, Primitive, ReferencePoint, Shape, SurfacePoint};
@@ -112,14 +112,18 @@ impl DiffuseAreaLight {
     #[inline]
     pub(super) fn sample(
         &self,
+        strategy: LightStrategy,
         from: &ReferencePoint,
         u: Vec2,
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
         let primitive = self.primitive();
-        let s = match &self.radiance {
-            AreaRadiance::Uniform(_) => primitive.sample_from(from, u)?,
-            AreaRadiance::Image(image) => image.sample_from(&primitive, from, u)?,
+        let s = match (strategy, &self.radiance) {
+            (LightStrategy::ByTexture, AreaRadiance::Image(image)) => {
+                image.sample_from(&primitive, from, u)?
+            }
+            (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => primitive.sample_from(from, u)?,
+            (LightStrategy::UniformArea, _) => primitive.sample_area_from(from, u)?,
         };
         let to_light = s.p - from.p;
         let distance_squared = to_light.length_squared();
@@ -139,11 +143,14 @@ impl DiffuseAreaLight {
 
     /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`.
     #[inline]
-    pub(super) fn pdf(&self, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
+    pub(super) fn pdf(&self, strategy: LightStrategy, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         let primitive = self.primitive();
-        match &self.radiance {
-            AreaRadiance::Uniform(_) => primitive.pdf_from_point(from, point),
-            AreaRadiance::Image(image) => image.pdf_from(&primitive, from, point),
+        match (strategy, &self.radiance) {
+            (LightStrategy::ByTexture, AreaRadiance::Image(image)) => image.pdf_from(&primitive, from, point),
+            (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => {
+                primitive.pdf_from_point(from, point)
+            }
+            (LightStrategy::UniformArea, _) => primitive.pdf_area_from_point(from, point),
         }
     }
 }

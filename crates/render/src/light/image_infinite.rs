@@ -1,10 +1,9 @@
 //! An image infinitely far away on all sides.
 
-use super::{LightSample, RadianceImage, ShadowTarget};
-use std::f32::consts::FRAC_1_PI;
+use super::{LightSample, LightStrategy, RadianceImage, ShadowTarget};
 use tenfold_image::{Image, Interpolation};
 use tenfold_math::{Mat3, Vec2, Vec3, equal_area_sphere_to_square, equal_area_square_to_sphere};
-use tenfold_sampling::distribution::PiecewiseConstant2D;
+use tenfold_sampling::{distribution::PiecewiseConstant2D, warp};
 use tenfold_spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
 /// An environment map in the equal-area octahedral projection (Clarberg 2008; pbrt book, 4th edition, section
@@ -47,21 +46,40 @@ impl ImageInfinite {
     }
 
     #[inline]
-    pub(super) fn sample(&self, u: Vec2, w: &SampledWavelengths) -> Option<LightSample> {
-        let s = self.distribution.sample(u);
-        let radiance = self.scale * self.image.pixel(s.cell, w);
-        (s.pdf > 0.0 && !radiance.is_black()).then(|| LightSample {
+    pub(super) fn sample(
+        &self,
+        strategy: LightStrategy,
+        u: Vec2,
+        w: &SampledWavelengths,
+    ) -> Option<LightSample> {
+        let (wi, color, pdf) = match strategy {
+            LightStrategy::ByTexture => {
+                let s = self.distribution.sample(u);
+                let wi = self.world_from_light * equal_area_square_to_sphere(s.point);
+                (wi, self.image.pixel(s.cell, w), s.pdf)
+            }
+            LightStrategy::UniformArea | LightStrategy::SolidAngle => {
+                let wi = warp::sample_uniform_sphere(u);
+                (wi, self.image.nearest(self.square(wi), w), 1.0)
+            }
+        };
+        let radiance = self.scale * color;
+        (pdf > 0.0 && !radiance.is_black()).then(|| LightSample {
             radiance,
-            wi: self.world_from_light * equal_area_square_to_sphere(s.point),
+            wi,
             target: ShadowTarget::Infinity,
-            pdf: s.pdf * (0.25 * FRAC_1_PI),
+            pdf: pdf * warp::uniform_sphere_pdf(),
             delta: false,
         })
     }
 
     /// Density per steradian of the unit `direction`.
     #[inline]
-    pub(super) fn pdf(&self, direction: Vec3) -> f32 {
-        self.distribution.pdf(self.square(direction)) * (0.25 * FRAC_1_PI)
+    pub(super) fn pdf(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
+        let on_square = match strategy {
+            LightStrategy::ByTexture => self.distribution.pdf(self.square(direction)),
+            LightStrategy::UniformArea | LightStrategy::SolidAngle => 1.0,
+        };
+        on_square * warp::uniform_sphere_pdf()
     }
 }

@@ -1,7 +1,7 @@
 //! All lights of a scene.
 
 use super::choice::{Entry, LightTree, MAX_LIGHTS};
-use super::{Light, LightSample, Role};
+use super::{Light, LightSample, LightStrategy, Role};
 use tenfold_geometry::{ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Id, Vec2, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
@@ -115,18 +115,19 @@ impl Lights {
         &self.skies
     }
 
-    /// Light that may arrive at `from`, by `u_choice` in `[0, 1)` and `u` in `[0, 1)²`. `None` where no light can be
-    /// found, or the attempt failed: an estimate of 0.
+    /// Light that may arrive at `from`, by `u_choice` in `[0, 1)` and `u` in `[0, 1)²`, from a point that `strategy`
+    /// chooses. `None` where no light can be found, or the attempt failed: an estimate of 0.
     #[inline]
     pub fn sample(
         &self,
+        strategy: LightStrategy,
         from: &ReferencePoint,
         u_choice: f32,
         u: Vec2,
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
         let choice = self.choose(from, u_choice)?;
-        let mut sample = self.all[choice.light].sample(from, u, w)?;
+        let mut sample = self.all[choice.light].sample(strategy, from, u, w)?;
         sample.pdf *= choice.pmf;
         (sample.pdf > 0.0).then_some(sample)
     }
@@ -147,11 +148,12 @@ impl Lights {
         }
     }
 
-    /// The density with which [`Lights::sample`] would have found, from `from`, the point `hit` on the area
-    /// light `light` in the unit direction `wi`.
+    /// The density with which [`Lights::sample`] by `strategy` would have found, from `from`, the point `hit` on
+    /// the area light `light` in the unit direction `wi`.
     #[inline]
     pub fn pdf_hit(
         &self,
+        strategy: LightStrategy,
         from: &ReferencePoint,
         light: Id<Light>,
         hit: &SurfaceInteraction,
@@ -162,7 +164,7 @@ impl Lights {
             return 0.0;
         }
         let pmf = self.pmf(from, light);
-        if pmf == 0.0 { 0.0 } else { pmf * l.pdf(from, &hit.surface_point()) }
+        if pmf == 0.0 { 0.0 } else { pmf * l.pdf(strategy, from, &hit.surface_point()) }
     }
 
     /// The radiance, in W·m⁻²·sr⁻¹·nm⁻¹, of the infinite light `light` from the unit `direction`.
@@ -171,11 +173,17 @@ impl Lights {
         self.get(light).escaped(direction, w)
     }
 
-    /// The density with which [`Lights::sample`] would have found, from `from`, the unit `direction` of the
-    /// infinite light `light`.
+    /// The density with which [`Lights::sample`] by `strategy` would have found, from `from`, the unit `direction` of
+    /// the infinite light `light`.
     #[inline]
-    pub fn pdf_escaped(&self, from: &ReferencePoint, light: Id<Light>, direction: Vec3) -> f32 {
-        self.pmf(from, light) * self.get(light).pdf_escaped(direction)
+    pub fn pdf_escaped(
+        &self,
+        strategy: LightStrategy,
+        from: &ReferencePoint,
+        light: Id<Light>,
+        direction: Vec3,
+    ) -> f32 {
+        self.pmf(from, light) * self.get(light).pdf_escaped(strategy, direction)
     }
 
     /// The probability with which [`Lights::sample`] chooses `light` at `from`.

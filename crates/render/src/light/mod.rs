@@ -16,6 +16,7 @@ mod point;
 mod projection;
 mod radiance_image;
 mod spot;
+mod strategy;
 mod uniform;
 
 #[cfg(test)]
@@ -35,6 +36,7 @@ pub use radiance_image::RadianceImage;
 pub(crate) use radiance_image::{mean_rgb, weighted_rgb};
 pub use spot::SpotLight;
 pub(crate) use spot::is_similarity;
+pub use strategy::LightStrategy;
 pub use uniform::UniformInfinite;
 
 use tenfold_geometry::{ReferencePoint, SHADOW_T_MAX, ShapeSample, ray_between};
@@ -160,16 +162,22 @@ impl Light {
 
     /// Light from this light at `from`, by `u` in `[0, 1)²`; the density is that of the direction alone.
     #[inline]
-    fn sample(&self, from: &ReferencePoint, u: Vec2, w: &SampledWavelengths) -> Option<LightSample> {
+    fn sample(
+        &self,
+        strategy: LightStrategy,
+        from: &ReferencePoint,
+        u: Vec2,
+        w: &SampledWavelengths,
+    ) -> Option<LightSample> {
         match self {
             Self::Point(l) => l.sample(from, w),
             Self::Spot(l) => l.sample(from, w),
             Self::Distant(l) => Some(l.sample(w)),
             Self::Projection(l) => l.sample(from, w),
             Self::Goniometric(l) => l.sample(from, w),
-            Self::Area(l) => l.sample(from, u, w),
+            Self::Area(l) => l.sample(strategy, from, u, w),
             Self::Uniform(l) => Some(l.sample(u, w)),
-            Self::Image(l) => l.sample(u, w),
+            Self::Image(l) => l.sample(strategy, u, w),
         }
     }
 
@@ -190,10 +198,10 @@ impl Light {
 
     /// Density with which [`Light::sample`] finds the infinitely far unit `direction`.
     #[inline]
-    fn pdf_escaped(&self, direction: Vec3) -> f32 {
+    fn pdf_escaped(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
         match self {
             Self::Uniform(l) => l.pdf(),
-            Self::Image(l) => l.pdf(direction),
+            Self::Image(l) => l.pdf(strategy, direction),
             Self::Point(_)
             | Self::Spot(_)
             | Self::Distant(_)

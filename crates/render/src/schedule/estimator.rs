@@ -17,7 +17,8 @@ pub struct PixelEstimator<'a> {
 impl<'a> PixelEstimator<'a> {
     /// An estimator of the pixels of `scene`, under those of `settings` that concern a sample.
     pub fn new(scene: &'a Scene, settings: &RenderSettings) -> Self {
-        Self { scene, tracer: PathTracer::new(scene, settings.dispersion, settings.spp) }
+        let tracer = PathTracer::new(scene, settings.dispersion, settings.strategies, settings.spp);
+        Self { scene, tracer }
     }
 
     /// The linear RGB of one sample, which may not be finite, with its filter weight in.

@@ -1,4 +1,8 @@
-use crate::{film::PixelBounds, integrator::DispersionRule, scene::Scene};
+use crate::{
+    film::PixelBounds,
+    integrator::{DispersionRule, Strategies},
+    scene::Scene,
+};
 use std::num::NonZeroUsize;
 use tenfold_sampling::SamplePlan;
 
@@ -33,6 +37,8 @@ pub struct RenderSettings {
     pub tile_order: TileOrder,
     /// What becomes of the other wavelengths at dispersive glass.
     pub dispersion: DispersionRule,
+    /// How lights and directions are sampled.
+    pub strategies: Strategies,
 }
 
 impl RenderSettings {
@@ -47,6 +53,7 @@ impl RenderSettings {
             tile_side: 16,
             tile_order: TileOrder::default(),
             dispersion: DispersionRule::default(),
+            strategies: Strategies::default(),
         }
     }
 }

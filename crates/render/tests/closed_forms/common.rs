@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use tenfold_math::{Ray, UVec2, Vec2, Vec3};
 use tenfold_render::compile::compile;
 use tenfold_render::film::Film;
-use tenfold_render::integrator::{DispersionRule, PathTracer, Workspace};
+use tenfold_render::integrator::{DispersionRule, PathTracer, Strategies, Workspace};
 use tenfold_render::scene::Scene;
 use tenfold_render::schedule::{PixelEstimator, RenderSettings, render};
 use tenfold_sampling::{Sampler, SamplerKind};
@@ -83,7 +83,7 @@ pub(crate) fn radiance(
     values: u32,
     seed: u64,
 ) -> [Welford; N] {
-    let tracer = PathTracer::new(scene, rule, 1);
+    let tracer = PathTracer::new(scene, rule, Strategies::default(), 1);
     let sampler = Sampler::new(SamplerKind::Independent, 1, seed);
     let mut moments = [Welford::new(); N];
     for value in 0..values {

@@ -3,7 +3,7 @@
 use super::common::{check_mean, fresnel, header, scene};
 use tenfold_math::{DVec3, Ray, UVec2, Vec2, Vec3};
 use tenfold_render::bxdf::Lobe;
-use tenfold_render::integrator::{DispersionRule, PathTracer, Workspace};
+use tenfold_render::integrator::{DispersionRule, PathTracer, Strategies, Workspace};
 use tenfold_render::scene::Scene;
 use tenfold_render::texture::TextureContext;
 use tenfold_sampling::{Sampler, SamplerKind};
@@ -151,7 +151,7 @@ fn a_slit_is_seen_where_it_is() {
                     corner(1.0, 1.0)
                 );
                 let scene = prism(glass, &slit);
-                let tracer = PathTracer::new(&scene, DispersionRule::Split, 1);
+                let tracer = PathTracer::new(&scene, DispersionRule::Split, Strategies::default(), 1);
                 let sampler = Sampler::new(SamplerKind::Independent, 1, 4);
                 let wavelengths = SampledWavelengths::fixed(line as f32);
                 let seen: Welford = (0..4000)

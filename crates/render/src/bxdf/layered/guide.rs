@@ -85,6 +85,11 @@ impl Guide {
         Self { coat, base, cosine, delta, is_delta, eta, inside, lobe }
     }
 
+    /// Probability of the coat's delta.
+    pub(super) fn delta_probability(&self) -> f32 {
+        if self.is_delta { self.coat } else { 0.0 }
+    }
+
     pub(super) fn choose(&self, u: f32) -> Choice {
         if u < self.coat || self.base + self.cosine == 0.0 {
             if self.is_delta { Choice::Delta } else { Choice::Coat }

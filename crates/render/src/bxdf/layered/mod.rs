@@ -204,6 +204,11 @@ impl Layered {
         reflected + passed * passed * sum
     }
 
+    /// Probability of the delta of a smooth coat.
+    pub(crate) fn delta_probability(&self, wo: Vec3) -> f32 {
+        Guide::new(self, wo * 1f32.copysign(wo.z)).delta_probability()
+    }
+
     pub(crate) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let sign = 1f32.copysign(wo.z);
         let wo = wo * sign;

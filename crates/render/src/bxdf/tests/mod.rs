@@ -4,6 +4,7 @@ mod chi2;
 mod coated;
 mod consistency;
 mod energy;
+mod strategies;
 
 use tenfold_math::Vec3;
 use tenfold_math::ops;

@@ -1,7 +1,7 @@
 //! Lights as scene files describe them, and what is said about faulty ones.
 
 use super::*;
-use crate::light::{LightSample, Lights};
+use crate::light::{LightSample, LightStrategy::ByTexture, Lights};
 use std::path::PathBuf;
 use tenfold_geometry::{ReferencePoint, Shape, Sphere, SphereParams};
 use tenfold_image::{Format, WriteOptions};
@@ -68,7 +68,7 @@ fn luminance(f: impl Fn(&SampledWavelengths) -> SampledSpectrum) -> f32 {
 }
 
 fn sample(light: &Light, at: Vec3, u: Vec2, w: &SampledWavelengths) -> Option<LightSample> {
-    Lights::build(vec![light.clone()]).sample(&ReferencePoint::free(at, 0.0), 0.5, u, w)
+    Lights::build(vec![light.clone()]).sample(ByTexture, &ReferencePoint::free(at, 0.0), 0.5, u, w)
 }
 
 /// Luminous radiance or irradiance of the light as seen from `at`.
@@ -127,7 +127,9 @@ fn luminous_power(light: &Light) -> f32 {
         for i in 0..n * n {
             let st = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
             let from = ReferencePoint::free(equal_area_square_to_sphere(st), 0.0);
-            sum += lights.sample(&from, 0.5, Vec2::ZERO, w).map_or(SampledSpectrum::ZERO, |s| s.radiance);
+            sum += lights
+                .sample(ByTexture, &from, 0.5, Vec2::ZERO, w)
+                .map_or(SampledSpectrum::ZERO, |s| s.radiance);
         }
         sum * (4.0 * PI / (n * n) as f32)
     };

@@ -116,16 +116,17 @@ fn compare(lights: &Lights, from: &ReferencePoint, seed: u64) -> Comparison {
         let light = lights.get(id);
         let count = if matches!(light, Light::Area(_)) { 4000 } else { 1 };
         let mean: Welford =
-            (0..count).map(|_| light.sample(from, rng.vec2(), &w).map_or(0.0, value)).collect();
+            (0..count).map(|_| light.sample(ByTexture, from, rng.vec2(), &w).map_or(0.0, value)).collect();
         exact += mean.mean;
     }
-    let chosen =
-        (0..60_000).map(|_| lights.sample(from, rng.f32(), rng.vec2(), &w).map_or(0.0, value)).collect();
+    let chosen = (0..60_000)
+        .map(|_| lights.sample(ByTexture, from, rng.f32(), rng.vec2(), &w).map_or(0.0, value))
+        .collect();
     let n = lights.len();
     let uniform = (0..60_000)
         .map(|_| {
             let light = lights.get(Id::new(rng.below(n)));
-            light.sample(from, rng.vec2(), &w).map_or(0.0, |s| n as f64 * value(s))
+            light.sample(ByTexture, from, rng.vec2(), &w).map_or(0.0, |s| n as f64 * value(s))
         })
         .collect();
     Comparison { exact, chosen, uniform }
@@ -150,13 +151,15 @@ fn lights_without_light_are_never_chosen() {
     all.extend(area(sphere(Vec3::Y, 0.5), 0.0, false));
     all.push(Light::Uniform(UniformInfinite { radiance: constant(0.0) }));
     let lights = Lights::build(all.clone());
-    assert!(lights.sample(&points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none());
+    assert!(lights.sample(ByTexture, &points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none());
     all.push(Light::Point(PointLight { position: Vec3::Z, intensity: constant(1.0) }));
     let lights = Lights::build(all);
     let id = Id::new(lights.len() - 1);
     assert_eq!(lights.pmf(&points()[0], id), 1.0);
-    assert_eq!(lights.sample(&points()[0], 0.999, Vec2::ZERO, &wavelengths()).unwrap().pdf, 1.0);
-    assert!(Lights::build(Vec::new()).sample(&points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none());
+    assert_eq!(lights.sample(ByTexture, &points()[0], 0.999, Vec2::ZERO, &wavelengths()).unwrap().pdf, 1.0);
+    assert!(
+        Lights::build(Vec::new()).sample(ByTexture, &points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none()
+    );
 }
 
 /// Lights in one place, in a line, and a hundred thousand of them.

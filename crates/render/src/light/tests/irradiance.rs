@@ -14,7 +14,7 @@ fn estimate(lights: &Lights, from: &ReferencePoint, samples: usize, seed: u64) -
     (0..samples)
         .map(|_| {
             let (c, u) = (rng.f32(), rng.vec2());
-            lights.sample(from, c, u, &wavelengths()).map_or(0.0, |s| {
+            lights.sample(ByTexture, from, c, u, &wavelengths()).map_or(0.0, |s| {
                 let cos = s.wi.dot(from.n).max(0.0);
                 f64::from(s.radiance[0] * cos / s.pdf)
             })
@@ -25,7 +25,7 @@ fn estimate(lights: &Lights, from: &ReferencePoint, samples: usize, seed: u64) -
 /// The irradiance of one light that needs no chance.
 fn exact(light: Light, from: &ReferencePoint) -> f32 {
     let lights = Lights::build(vec![light]);
-    lights.sample(from, 0.3, Vec2::splat(0.4), &wavelengths()).map_or(0.0, |s| {
+    lights.sample(ByTexture, from, 0.3, Vec2::splat(0.4), &wavelengths()).map_or(0.0, |s| {
         assert!(s.delta && s.pdf == 1.0);
         s.radiance[0] * s.wi.dot(from.n).max(0.0)
     })
@@ -69,7 +69,9 @@ fn power_of_lights_at_a_point() {
             let st = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
             let from = ReferencePoint::free(equal_area_square_to_sphere(st), 0.0);
             let w = wavelengths();
-            sum += lights.sample(&from, 0.5, Vec2::splat(0.5), &w).map_or(0.0, |s| f64::from(s.radiance[0]));
+            sum += lights
+                .sample(ByTexture, &from, 0.5, Vec2::splat(0.5), &w)
+                .map_or(0.0, |s| f64::from(s.radiance[0]));
         }
         (sum * 4.0 * std::f64::consts::PI / (n * n) as f64) as f32
     };
@@ -206,7 +208,7 @@ fn skies_keep_their_mean() {
     let from = ReferencePoint::free(Vec3::ZERO, 0.0);
     let estimates: Welford = (0..50_000)
         .map(|_| {
-            let s = lights.sample(&from, 0.5, rng.vec2(), &w).unwrap();
+            let s = lights.sample(ByTexture, &from, 0.5, rng.vec2(), &w).unwrap();
             f64::from(s.radiance[0] / s.pdf) / (4.0 * std::f64::consts::PI)
         })
         .collect();

@@ -4,6 +4,7 @@ mod choice;
 mod irradiance;
 mod sampling;
 
+use super::LightStrategy::ByTexture;
 use super::*;
 use std::sync::Arc;
 use tenfold_geometry::{
@@ -119,14 +120,14 @@ fn seen(light: &Light, from: &ReferencePoint, wi: Vec3) -> Option<tenfold_geomet
 }
 
 /// The density of `wi` by everything that a path knows: what it meets, and [`Lights`].
-fn density(lights: &Lights, from: &ReferencePoint, wi: Vec3) -> f32 {
+fn density(strategy: LightStrategy, lights: &Lights, from: &ReferencePoint, wi: Vec3) -> f32 {
     let of = |i: usize| {
         let id = tenfold_math::Id::new(i);
         let light = lights.get(id);
         if light.is_sky() {
-            return lights.pdf_escaped(from, id, wi);
+            return lights.pdf_escaped(strategy, from, id, wi);
         }
-        seen(light, from, wi).map_or(0.0, |hit| lights.pdf_hit(from, id, &hit, wi))
+        seen(light, from, wi).map_or(0.0, |hit| lights.pdf_hit(strategy, from, id, &hit, wi))
     };
     (0..lights.len()).map(of).sum()
 }

@@ -5,9 +5,16 @@ use tenfold_math::Id;
 use tenfold_testkit::Options;
 use tenfold_testkit::chi2::sphere_test;
 
-const TESTS: usize = 40;
+const TESTS: usize = 90;
 
-fn check(what: &str, lights: &Lights, from: &ReferencePoint, seed: u64) {
+/// Those that differ where there is no picture on a surface.
+const PLAIN: [LightStrategy; 2] = [LightStrategy::UniformArea, ByTexture];
+
+fn check(what: &str, strategies: &[LightStrategy], lights: &Lights, from: &ReferencePoint, seed: u64) {
+    strategies.iter().for_each(|&strategy| check_one(what, strategy, lights, from, seed));
+}
+
+fn check_one(what: &str, strategy: LightStrategy, lights: &Lights, from: &ReferencePoint, seed: u64) {
     let options = Options {
         samples: 60_000,
         theta_bins: 12,
@@ -17,8 +24,9 @@ fn check(what: &str, lights: &Lights, from: &ReferencePoint, seed: u64) {
         evaluations: 20_000,
         ..Options::default()
     };
-    let sample = |u_choice, u| lights.sample(from, u_choice, u, &wavelengths()).map(|s| s.wi);
-    sphere_test(sample, |wi| f64::from(density(lights, from, wi)), &options).check(what);
+    let sample = |u_choice, u| lights.sample(strategy, from, u_choice, u, &wavelengths()).map(|s| s.wi);
+    let pdf = |wi| f64::from(density(strategy, lights, from, wi));
+    sphere_test(sample, pdf, &options).check(&format!("{what}, {}", strategy.name()));
 }
 
 fn references() -> [ReferencePoint; 3] {
@@ -42,7 +50,7 @@ fn area_lights_have_the_density_of_their_samples() {
     for (seed, (name, shape)) in shapes.into_iter().enumerate() {
         let lights = Lights::build(area(shape, 2.0, false));
         for (i, from) in references().iter().enumerate() {
-            check(&format!("{name}, reference {i}"), &lights, from, seed as u64 * 3 + i as u64);
+            check(&format!("{name}, reference {i}"), &PLAIN, &lights, from, seed as u64 * 3 + i as u64);
         }
     }
 }
@@ -63,7 +71,7 @@ fn images_on_area_lights_too() {
         let lights = Lights::build(vec![textured(shape)]);
         for (i, from) in references().iter().enumerate() {
             let seed = 100 + seed as u64 * 3 + i as u64;
-            check(&format!("{name}, reference {i}"), &lights, from, seed);
+            check(&format!("{name}, reference {i}"), &LightStrategy::ALL, &lights, from, seed);
         }
     }
 }
@@ -72,7 +80,7 @@ fn images_on_area_lights_too() {
 fn skies_have_the_density_of_their_samples() {
     let uniform = Light::Uniform(UniformInfinite { radiance: constant(1.0) });
     for (i, light) in [uniform, image_sky()].into_iter().enumerate() {
-        check(&format!("sky {i}"), &Lights::build(vec![light]), &references()[0], 200 + i as u64);
+        check(&format!("sky {i}"), &PLAIN, &Lights::build(vec![light]), &references()[0], 200 + i as u64);
     }
 }
 
@@ -84,7 +92,7 @@ fn mixed_scenes_have_the_density_of_their_samples() {
     all.push(image_sky());
     let lights = Lights::build(all);
     for (i, from) in references().iter().enumerate() {
-        check(&format!("mixed, reference {i}"), &lights, from, 300 + i as u64);
+        check(&format!("mixed, reference {i}"), &PLAIN, &lights, from, 300 + i as u64);
     }
 }
 
@@ -96,19 +104,24 @@ fn densities_agree_sample_by_sample() {
     all.extend(area(disk(1.4, 0.6), 3.0, false));
     all.push(image_sky());
     let mut rng = Rng::new(5);
-    for all in all.into_iter().map(|l| vec![l]) {
-        let lights = Lights::build(all);
+    let each = all.into_iter().flat_map(|l| LightStrategy::ALL.map(|strategy| (strategy, l.clone())));
+    for (strategy, light) in each {
+        let lights = Lights::build(vec![light]);
         for from in references() {
             let mut off = 0;
             for _ in 0..2000 {
                 let (c, u) = (rng.f32(), rng.vec2());
-                let Some(s) = lights.sample(&from, c, u, &wavelengths()) else { continue };
-                let pdf = density(&lights, &from, s.wi);
+                let Some(s) = lights.sample(strategy, &from, c, u, &wavelengths()) else { continue };
+                let pdf = density(strategy, &lights, &from, s.wi);
+                // Near the rim of a ball a density by area divides by a cosine of few digits.
+                if seen(lights.get(Id::new(0)), &from, s.wi).is_some_and(|hit| hit.n.dot(s.wi).abs() < 0.02) {
+                    continue;
+                }
                 // At edges and between pixels rounding decides; there are few of them.
                 off += ((pdf / s.pdf - 1.0).abs() > 2e-3) as u32;
                 assert!(!s.delta && s.pdf > 0.0 && s.wi.is_normalized());
             }
-            assert!(off <= 6, "{off} of 2000: {:?}", lights.get(Id::new(0)));
+            assert!(off <= 6, "{}: {off} of 2000: {:?}", strategy.name(), lights.get(Id::new(0)));
         }
     }
 }
@@ -119,7 +132,7 @@ fn a_sample_shines_what_a_ray_sees() {
     let from = references()[0];
     let mut rng = Rng::new(9);
     for _ in 0..500 {
-        let Some(s) = lights.sample(&from, 0.5, rng.vec2(), &wavelengths()) else { continue };
+        let Some(s) = lights.sample(ByTexture, &from, 0.5, rng.vec2(), &wavelengths()) else { continue };
         let hit = seen(lights.get(Id::new(0)), &from, s.wi).unwrap();
         let emitted = lights.emitted(Id::new(0), &hit, -s.wi, &wavelengths());
         assert!((emitted[0] - s.radiance[0]).abs() <= 1e-3 * s.radiance[0].max(0.1), "{emitted:?} {s:?}");

@@ -1,0 +1,34 @@
+/// How the point on a light is chosen, once the light is.
+///
+/// All of them find all light; what differs is the noise. They concern lights that have more than one point: areas and
+/// infinite lights.
+///
+/// | | on a surface | infinitely far away |
+/// |---|---|---|
+/// | `UniformArea` | by area | by direction |
+/// | `SolidAngle` | by solid angle, where the shape can | by direction |
+/// | `ByTexture` | the same, and where there is a picture also by its brightness | by the brightness of the picture |
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum LightStrategy {
+    /// Uniformly over the light's area (quadrics that are stretched unevenly: over that before), or over all directions.
+    UniformArea,
+    /// Uniformly over what is seen of it, as far as the shape can: spheres, triangles and rectangles. Pictures are ignored.
+    SolidAngle,
+    /// In proportion to its picture, and to solid angle near it.
+    #[default]
+    ByTexture,
+}
+
+impl LightStrategy {
+    /// All of them, plain before refined.
+    pub const ALL: [Self; 3] = [Self::UniformArea, Self::SolidAngle, Self::ByTexture];
+
+    /// The name, in kebab case.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::UniformArea => "uniform-area",
+            Self::SolidAngle => "solid-angle",
+            Self::ByTexture => "by-texture",
+        }
+    }
+}
