@@ -2,6 +2,7 @@
 
 use crate::{
     failure::Failure,
+    lab::{self, LabArgs},
     pbrt_options,
     progress::Style,
     strategy::{self, Strategy},
@@ -11,7 +12,7 @@ use std::{ffi::OsString, path::PathBuf};
 use tenfold_render::{integrator::DispersionRule, schedule};
 use tenfold_sampling::{Mapped, SamplerKind};
 
-const STYLES: styling::Styles = styling::Styles::styled()
+pub(crate) const STYLES: styling::Styles = styling::Styles::styled()
     .header(styling::AnsiColor::Green.on_default().bold())
     .usage(styling::AnsiColor::Green.on_default().bold())
     .literal(styling::AnsiColor::Cyan.on_default().bold())
@@ -31,6 +32,7 @@ Examples:
   tenfold room.pbrt --cropwindow 0.5,1,0,0.5 -o corner.png
   tenfold room.pbrt --pixel 320,240    one pixel, its value on standard output
   tenfold room.pbrt --progress json    for programs: one JSON object a line
+  tenfold lab --help                experiments on the renderer
 
 Files are written in full or not at all. Ctrl-C ends a render early and keeps what there is.
 
@@ -189,10 +191,15 @@ pub(crate) enum Request {
     Shown,
     /// A render; the strings are to be told first.
     Render(Box<Args>, Vec<String>),
+    /// An experiment.
+    Lab(Box<LabArgs>),
 }
 
 /// Understands the command line, given without the program's name.
 pub(crate) fn parse(argv: Vec<OsString>) -> Result<Request, Failure> {
+    if let Some(("lab", rest)) = argv.split_first().and_then(|(first, rest)| Some((first.to_str()?, rest))) {
+        return Ok(lab::parse(rest)?.map_or(Request::Shown, |args| Request::Lab(Box::new(args))));
+    }
     let command = Args::command();
     let translated = pbrt_options::translate(argv, &command)?;
     let program = std::iter::once(OsString::from("tenfold"));
@@ -216,7 +223,9 @@ pub(crate) fn wants_json(argv: &[OsString]) -> bool {
 }
 
 /// Numbers with commas between.
-fn list<T: std::str::FromStr + PartialOrd + Copy, const N: usize>(text: &str) -> Result<[T; N], String> {
+pub(crate) fn list<T: std::str::FromStr + PartialOrd + Copy, const N: usize>(
+    text: &str,
+) -> Result<[T; N], String> {
     let numbers: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     // What is not equal to itself is not a number.
     let numbers = numbers.filter(|all| all.iter().all(|n| n.partial_cmp(n).is_some()));
@@ -225,7 +234,7 @@ fn list<T: std::str::FromStr + PartialOrd + Copy, const N: usize>(text: &str) ->
         .ok_or_else(|| format!("expected {N} numbers with commas between, and no blanks"))
 }
 
-fn sampler(name: &str) -> Result<Mapped, String> {
+pub(crate) fn sampler(name: &str) -> Result<Mapped, String> {
     SamplerKind::from_pbrt(name).ok_or_else(|| {
         let known: Vec<_> = SamplerKind::ALL.iter().map(|kind| kind.name()).chain(["jittered"]).collect();
         match tenfold_scene::nearest(name, known.iter().copied()) {
@@ -255,7 +264,7 @@ mod tests {
     fn parsed(line: &str) -> Result<Args, Failure> {
         match parse(line.split_whitespace().map(OsString::from).collect())? {
             Request::Render(args, _) => Ok(*args),
-            Request::Shown => panic!("nothing to render"),
+            Request::Shown | Request::Lab(_) => panic!("nothing to render"),
         }
     }
 

@@ -7,7 +7,10 @@ use crate::{
     units::plural,
 };
 use std::{io::Read, path::Path, time::Instant};
-use tenfold_render::{compile::compile, scene::Scene};
+use tenfold_render::{
+    compile::{coarsen, compile},
+    scene::Scene,
+};
 use tenfold_scene::{
     Description, Diagnostics, FileResources, Resources, Severity, SourceMap, read_pbrt, read_pbrt_str,
 };
@@ -55,12 +58,21 @@ impl Counts {
     }
 }
 
-/// Reads and compiles the scene at `path`, the one carried along where there is none, and tells of its faults.
-pub(crate) fn load(path: Option<&Path>, quiet: bool, reporter: &Reporter) -> Result<Loaded, Failure> {
+/// Reads and compiles the scene at `path`, the one carried along where there is none, and tells of its faults. Its picture is
+/// made coarser where it has more than `most_pixels`.
+pub(crate) fn load(
+    path: Option<&Path>,
+    quiet: bool,
+    reporter: &Reporter,
+    most_pixels: Option<u32>,
+) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let mut sources = SourceMap::new();
     let source = Source::of(path)?;
-    let (description, diagnostics) = source.read(&mut sources);
+    let (mut description, diagnostics) = source.read(&mut sources);
+    if let Some(most) = most_pixels {
+        coarsen(&mut description, most);
+    }
     let read_seconds = start.elapsed().as_secs_f64();
     tracing::info!("read {} in {read_seconds:.3} s", source.name());
 

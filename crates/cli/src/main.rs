@@ -1,7 +1,7 @@
 //! The `tenfold` program.
 //!
 //! `args` turns the command line into a request, `load` the scene into what renders, `work` does it; `progress` and `report` tell
-//! of it, `diagnostics` of the scene's faults, `output` writes the picture. Every way out passes through `main`, which turns
+//! of it, `diagnostics` of the scene's faults, `output` writes the picture. `lab` is the experiments. Every way out passes through `main`, which turns
 //! it into an exit code: 0 done, 1 the render failed, 2 the scene or the command line is wrong.
 
 mod args;
@@ -10,6 +10,7 @@ mod default_scene;
 mod diagnostics;
 mod failure;
 mod interrupt;
+mod lab;
 mod load;
 mod output;
 mod pbrt_options;
@@ -40,6 +41,10 @@ fn main() -> ExitCode {
 fn run(argv: Vec<OsString>, json: bool) -> Result<(), Failure> {
     match args::parse(argv)? {
         Request::Shown => Ok(()),
+        Request::Lab(args) => {
+            interrupt::listen(false);
+            lab::run(&args)
+        }
         Request::Render(args, notes) => {
             start_log(args.log.as_deref())?;
             interrupt::listen(json);

@@ -35,20 +35,7 @@ impl Target {
 
     /// Whether a file can be put there, found out before hours are spent on its content.
     pub(crate) fn check_writable(&self) -> Result<(), Failure> {
-        let failed = |why: &dyn std::fmt::Display| {
-            Failure::Failed(format!("cannot write {}: {why}", self.path.display()))
-        };
-        if self.path.is_dir() {
-            return Err(failed(&"it is a directory"));
-        }
-        // A temporary file is made beside it, as it will be for the picture, and given up.
-        match write_atomic(&self.path, |_| Err::<(), _>(Trial::Possible)) {
-            Err(Trial::Impossible(error)) if error.kind() == io::ErrorKind::NotFound => {
-                Err(failed(&"there is no such directory"))
-            }
-            Err(Trial::Impossible(error)) => Err(failed(&error)),
-            Ok(()) | Err(Trial::Possible) => Ok(()),
-        }
+        check_writable(&self.path)
     }
 
     /// Writes the picture.
@@ -57,6 +44,23 @@ impl Target {
         let options = WriteOptions { png_depth, ..WriteOptions::default() };
         let image = picture.image(self.format).map_err(|error| error.to_string())?;
         image.write(&self.path, &options).map_err(|error| error.to_string())
+    }
+}
+
+/// Whether a file can be put at `path`, found out before hours are spent on its content.
+pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
+    let failed =
+        |why: &dyn std::fmt::Display| Failure::Failed(format!("cannot write {}: {why}", path.display()));
+    if path.is_dir() {
+        return Err(failed(&"it is a directory"));
+    }
+    // A temporary file is made beside it, as it will be for the picture, and given up.
+    match write_atomic(path, |_| Err::<(), _>(Trial::Possible)) {
+        Err(Trial::Impossible(error)) if error.kind() == io::ErrorKind::NotFound => {
+            Err(failed(&"there is no such directory"))
+        }
+        Err(Trial::Impossible(error)) => Err(failed(&error)),
+        Ok(()) | Err(Trial::Possible) => Ok(()),
     }
 }
 

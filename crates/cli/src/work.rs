@@ -27,7 +27,7 @@ pub(crate) fn render(args: &Args) -> Result<(), Failure> {
     // What cannot be written must be known before the work, not after it.
     let mut targets = output::asked_for(args)?;
     targets.iter().try_for_each(Target::check_writable)?;
-    let loaded = load::load(args.scene.as_deref(), args.quiet, &reporter)?;
+    let loaded = load::load(args.scene.as_deref(), args.quiet, &reporter, None)?;
     if targets.is_empty() && args.pixel.is_none() {
         targets.push(output::default_target(args, &loaded.scene)?);
         targets.iter().try_for_each(Target::check_writable)?;
@@ -71,7 +71,7 @@ fn interrupted(render: &Render, settings: &RenderSettings, written: &[Target]) -
 }
 
 /// Has the compile step use as many threads as the render will.
-fn use_threads(n: u16) {
+pub(crate) fn use_threads(n: u16) {
     let built = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global();
     if let Err(error) = built {
         tracing::warn!("cannot set the number of threads: {error}");

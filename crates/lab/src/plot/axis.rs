@@ -115,7 +115,7 @@ impl Fitted {
                 let digits = (-ops::log10(step).floor()).clamp(0.0, 9.0) as usize;
                 self.multiples(step).map(|v| self.tick(v, minus(format!("{v:.digits$}")))).collect()
             }
-            Scale::Log if span < 1.2 => self.mantissas(),
+            Scale::Log if span < 2.2 => self.mantissas(),
             Scale::Log => {
                 let step = (span / most as f64).ceil().max(1.0);
                 self.multiples(step).map(|e| self.tick(e, power_of_ten(e as i32))).collect()
@@ -140,7 +140,7 @@ impl Fitted {
         (first..=last).map(move |k| k as f64 * step)
     }
 
-    /// Numbers of one digit, for little more than a decade.
+    /// Numbers of one digit, for a decade or two.
     fn mantissas(&self) -> Vec<Tick> {
         let span = self.high - self.low;
         let digits: &[f64] = match () {
@@ -207,7 +207,7 @@ mod tests {
             ["−0.03", "−0.02", "−0.01", "0.00", "0.01", "0.02"]
         );
         assert_eq!(labels(Axis::log("x"), 1e-3, 100.0), ["0.001", "0.01", "0.1", "1", "10", "100"]);
-        assert_eq!(labels(Axis::log("x"), 1e-7, 1e-5), ["10⁻⁷", "10⁻⁶", "10⁻⁵"]);
+        assert_eq!(labels(Axis::log("x"), 1e-8, 1e-5), ["10⁻⁸", "10⁻⁷", "10⁻⁶", "10⁻⁵"]);
         assert_eq!(labels(Axis::log("x"), 0.015, 0.11), ["0.02", "0.05", "0.1"]);
         assert_eq!(labels(Axis::log2("x"), 1.0, 64.0), ["1", "2", "4", "8", "16", "32", "64"]);
         assert_eq!(labels(Axis::log2("x"), 1.0, 4096.0).len(), 7);

@@ -1,0 +1,112 @@
+//! `tenfold lab convergence`.
+
+use super::{
+    options::{Common, SceneOptions, Session},
+    variants::{self, NamedPlan},
+};
+use crate::{failure::Failure, load::Loaded};
+use std::path::Path;
+use tenfold_lab::convergence::{
+    self, Integral, Options, Variant, of_integral, of_scene, work_of_integral, work_of_scene,
+};
+use tenfold_render::schedule::RenderSettings;
+
+/// Compares how fast ways to draw the samples converge.
+///
+/// SCENE is a file in pbrt-v4's format or one of the integrals with known values, integral:smooth-2d, integral:smooth-4d,
+/// integral:smooth-10d, integral:disk-2d; without any, these four are looked at.
+#[derive(clap::Args, Clone, Debug)]
+pub(super) struct Args {
+    /// Scenes, or integrals
+    #[arg(value_name = "SCENE")]
+    subjects: Vec<String>,
+
+    /// Samplers to compare
+    #[arg(long, value_name = "NAME,...", value_parser = variants::plan, value_delimiter = ',',
+          default_value = "independent,jittered,n-rooks,multi-jittered,halton,paddedsobol,zsobol")]
+    samplers: Vec<NamedPlan>,
+
+    /// Samples per pixel at which the error is measured
+    #[arg(long, value_name = "N,...", value_parser = clap::value_parser!(u32).range(1..), value_delimiter = ',',
+          default_value = "1,2,4,8,16,32,64,128,256")]
+    spp: Vec<u32>,
+
+    /// Renders for each of them, whose spread gives the error bars
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    seeds: u32,
+
+    /// The reference has N times the samples of the largest count
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(16..=1_000_000))]
+    reference: u32,
+
+    #[command(flatten)]
+    scene: SceneOptions,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What is to be estimated.
+enum Subject {
+    Integral(Integral),
+    Scene(Box<(Loaded, RenderSettings)>),
+}
+
+/// Does the experiment.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let session = Session::new(&args.common, "convergence")?;
+    let subjects = subjects(args, &session)?;
+    let mut counts = args.spp.clone();
+    counts.sort_unstable();
+    counts.dedup();
+    let options = Options { counts, seeds: args.seeds, seed: args.common.seed, reference: args.reference };
+
+    let plans: Vec<_> = args.samplers.iter().map(|s| (s.name.clone(), s.plan)).collect();
+    let samples = subjects.iter().map(|subject| match subject {
+        Subject::Integral(_) => work_of_integral(plans.len(), &options),
+        Subject::Scene(scene) => work_of_scene(scene.1.bounds, plans.len(), &options),
+    });
+    let results = session.work(samples.sum(), |work| {
+        let experiment = |subject: &Subject| match subject {
+            Subject::Integral(integral) => of_integral(integral, &plans, &options, work),
+            Subject::Scene(scene) => {
+                let (loaded, settings) = &**scene;
+                let variants: Vec<Variant> = variants(args, settings);
+                of_scene(&loaded.name, &loaded.scene, settings, &variants, &options, work)
+            }
+        };
+        subjects.iter().map(experiment).collect::<Result<Vec<_>, _>>()
+    })?;
+    session.finish(&convergence::page(&results))
+}
+
+/// The ways to render a scene.
+fn variants(args: &Args, usual: &RenderSettings) -> Vec<Variant> {
+    let variant = |s: &NamedPlan| Variant {
+        name: s.name.clone(),
+        settings: RenderSettings { sampling: s.plan, ..usual.clone() },
+    };
+    args.samplers.iter().map(variant).collect()
+}
+
+fn subjects(args: &Args, session: &Session<'_>) -> Result<Vec<Subject>, Failure> {
+    if args.subjects.is_empty() {
+        return Ok(Integral::ALL.map(Subject::Integral).into());
+    }
+    let subject = |text: &String| match text.strip_prefix("integral:") {
+        Some(name) => integral(name).map(Subject::Integral),
+        None => Ok(Subject::Scene(Box::new(session.load(Some(Path::new(text)), &args.scene)?))),
+    };
+    args.subjects.iter().map(subject).collect()
+}
+
+fn integral(name: &str) -> Result<Integral, Failure> {
+    Integral::named(name).ok_or_else(|| {
+        let known = Integral::ALL.map(|integral| integral.name);
+        let hint = match tenfold_scene::nearest(name, known) {
+            Some(near) => format!("did you mean integral:{near}?"),
+            None => format!("there are {}", known.join(", ")),
+        };
+        Failure::Wrong(format!("there is no integral {name}; {hint}"))
+    })
+}

@@ -1,0 +1,93 @@
+//! `tenfold lab …`: experiments, each to a page.
+
+mod convergence;
+mod options;
+mod variants;
+
+use crate::{args::STYLES, failure::Failure};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
+
+const ABOUT: &str = "\
+Experiments on the renderer, each written to one HTML page with its plots and pictures.
+
+The numbers are in CSV files beside the page, and within it.";
+
+const EXAMPLES: &str = "\
+Examples:
+  tenfold lab convergence room.pbrt
+  tenfold lab convergence integral:smooth-2d --samplers independent,jittered,zsobol -o smooth.html
+
+Exit codes are those of tenfold: 0 done; 1 the experiment failed; 2 the scene or the command line is wrong.";
+
+/// The command line after `tenfold lab`.
+#[derive(Parser, Clone, Debug)]
+#[command(
+    name = "tenfold lab",
+    about = ABOUT,
+    after_help = EXAMPLES,
+    styles = STYLES,
+    max_term_width = 100,
+    args_override_self = true
+)]
+pub(crate) struct LabArgs {
+    #[command(subcommand)]
+    experiment: Experiment,
+}
+
+/// Which experiment.
+#[derive(Subcommand, Clone, Debug)]
+enum Experiment {
+    /// Error against samples and against seconds, with fitted slopes
+    Convergence(convergence::Args),
+}
+
+/// Understands the command line after `tenfold lab`. `None` where help was asked for, and has been shown.
+pub(crate) fn parse(argv: &[OsString]) -> Result<Option<LabArgs>, Failure> {
+    let program = OsString::from("tenfold lab");
+    let matched = LabArgs::command().try_get_matches_from(std::iter::once(&program).chain(argv));
+    match matched.and_then(|matches| LabArgs::from_arg_matches(&matches)) {
+        Ok(args) => Ok(Some(args)),
+        Err(error) if error.use_stderr() => Err(Failure::Usage(error.render().to_string())),
+        Err(shown) => {
+            // Where nobody reads help there is nobody to tell.
+            let _ = shown.print();
+            Ok(None)
+        }
+    }
+}
+
+/// Does the experiment.
+pub(crate) fn run(args: &LabArgs) -> Result<(), Failure> {
+    match &args.experiment {
+        Experiment::Convergence(args) => convergence::run(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        LabArgs::command().debug_assert();
+    }
+
+    #[test]
+    fn wrong_command_lines_are_refused() {
+        for line in [
+            "",
+            "convergense",
+            "convergence --samplers zsobl",
+            "convergence --spp 0",
+            "convergence --spp 1,2,x",
+            "convergence --seeds 1",
+            "convergence --reference 8",
+            "convergence --max-pixels 0",
+            "convergence --cropwindow 0,1",
+        ] {
+            let argv: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
+            assert_eq!(parse(&argv).unwrap_err().code(), 2, "{line}");
+        }
+    }
+}
