@@ -2,14 +2,26 @@
 
 use super::{
     options::{Common, SceneOptions, Session},
-    variants::{self, NamedPlan},
+    variants::{self, NamedPlan, NamedStrategies},
 };
 use crate::{failure::Failure, load::Loaded};
 use std::path::Path;
 use tenfold_lab::convergence::{
-    self, Integral, Options, Variant, of_integral, of_scene, work_of_integral, work_of_scene,
+    self, Integral, Options, of_integral, of_scene, work_of_integral, work_of_scene,
 };
 use tenfold_render::schedule::RenderSettings;
+use tenfold_sampling::SamplerKind;
+
+/// All samplers, from the simplest to the default.
+const KINDS: [SamplerKind; 7] = [
+    SamplerKind::Independent,
+    SamplerKind::Stratified,
+    SamplerKind::NRooks,
+    SamplerKind::MultiJittered,
+    SamplerKind::Halton,
+    SamplerKind::PaddedSobol,
+    SamplerKind::ZSobol,
+];
 
 /// Compares how fast ways to draw the samples converge.
 ///
@@ -21,10 +33,13 @@ pub(super) struct Args {
     #[arg(value_name = "SCENE")]
     subjects: Vec<String>,
 
-    /// Samplers to compare
-    #[arg(long, value_name = "NAME,...", value_parser = variants::plan, value_delimiter = ',',
-          default_value = "independent,jittered,n-rooks,multi-jittered,halton,paddedsobol,zsobol")]
+    /// Samplers to compare [default: all; with --strategies the default one]
+    #[arg(long, value_name = "NAME,...", value_parser = variants::plan, value_delimiter = ',')]
     samplers: Vec<NamedPlan>,
+
+    /// Strategies to compare, those of one render with + between: combine=mis,combine=light-only+light=uniform-area
+    #[arg(long, value_name = "VARIABLE=NAME+...,...", value_parser = variants::strategies, value_delimiter = ',')]
+    strategies: Vec<NamedStrategies>,
 
     /// Samples per pixel at which the error is measured
     #[arg(long, value_name = "N,...", value_parser = clap::value_parser!(u32).range(1..), value_delimiter = ',',
@@ -61,18 +76,22 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     counts.dedup();
     let options = Options { counts, seeds: args.seeds, seed: args.common.seed, reference: args.reference };
 
-    let plans: Vec<_> = args.samplers.iter().map(|s| (s.name.clone(), s.plan)).collect();
+    let plans = plans(args);
+    let variants = |usual: &RenderSettings| variants::all(&plans, &args.strategies, usual);
+    let plain: Vec<_> = plans.iter().map(|p| (p.name.clone(), p.plan)).collect();
     let samples = subjects.iter().map(|subject| match subject {
         Subject::Integral(_) => work_of_integral(plans.len(), &options),
-        Subject::Scene(scene) => work_of_scene(scene.1.bounds, plans.len(), &options),
+        Subject::Scene(scene) => work_of_scene(scene.1.bounds, variants(&scene.1).len(), &options),
     });
     let results = session.work(samples.sum(), |work| {
         let experiment = |subject: &Subject| match subject {
-            Subject::Integral(integral) => of_integral(integral, &plans, &options, work),
+            Subject::Integral(integral) => of_integral(integral, &plain, &options, work),
             Subject::Scene(scene) => {
                 let (loaded, settings) = &**scene;
-                let variants: Vec<Variant> = variants(args, settings);
-                of_scene(&loaded.name, &loaded.scene, settings, &variants, &options, work)
+                let name = Path::new(&loaded.name)
+                    .file_name()
+                    .map_or(loaded.name.as_str().into(), |n| n.to_string_lossy());
+                of_scene(&name, &loaded.scene, settings, &variants(settings), &options, work)
             }
         };
         subjects.iter().map(experiment).collect::<Result<Vec<_>, _>>()
@@ -80,13 +99,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     session.finish(&convergence::page(&results))
 }
 
-/// The ways to render a scene.
-fn variants(args: &Args, usual: &RenderSettings) -> Vec<Variant> {
-    let variant = |s: &NamedPlan| Variant {
-        name: s.name.clone(),
-        settings: RenderSettings { sampling: s.plan, ..usual.clone() },
-    };
-    args.samplers.iter().map(variant).collect()
+/// The ways to draw the samples.
+fn plans(args: &Args) -> Vec<NamedPlan> {
+    let named = |kind: SamplerKind| NamedPlan { name: kind.name().to_owned(), plan: kind.into() };
+    match (&args.samplers[..], &args.strategies[..]) {
+        ([], []) => KINDS.map(named).into(),
+        ([], _) => vec![named(SamplerKind::default())],
+        (given, _) => given.to_vec(),
+    }
 }
 
 fn subjects(args: &Args, session: &Session<'_>) -> Result<Vec<Subject>, Failure> {

@@ -79,6 +79,8 @@ mod tests {
             "",
             "convergense",
             "convergence --samplers zsobl",
+            "convergence --strategies light=dark",
+            "convergence --strategies light=uniform-area+combine",
             "convergence --spp 0",
             "convergence --spp 1,2,x",
             "convergence --seeds 1",

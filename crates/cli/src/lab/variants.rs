@@ -1,16 +1,55 @@
-//! Ways to draw the samples, as the command line names them to be compared.
+//! Ways to render, as the command line names them to be compared: the parts of one with `+` between.
 
-use crate::args::sampler;
+use crate::{args::sampler, strategy};
+use tenfold_lab::convergence::Variant;
+use tenfold_render::{integrator::Strategies, schedule::RenderSettings};
 use tenfold_sampling::SamplePlan;
 
-/// A plan and what it is called.
+/// A way to draw the samples and what it is called.
 #[derive(Clone, Debug)]
 pub(super) struct NamedPlan {
     pub(super) name: String,
     pub(super) plan: SamplePlan,
 }
 
+/// Strategies and what they are called.
+#[derive(Clone, Debug)]
+pub(super) struct NamedStrategies {
+    name: String,
+    strategies: Strategies,
+}
+
 /// Understands one of `--samplers`.
 pub(super) fn plan(text: &str) -> Result<NamedPlan, String> {
     Ok(NamedPlan { name: text.to_owned(), plan: sampler(text)?.kind.into() })
+}
+
+/// Understands one of `--strategies`.
+pub(super) fn strategies(text: &str) -> Result<NamedStrategies, String> {
+    let mut strategies = Strategies::default();
+    for part in text.split('+') {
+        strategy::parse(part)?.apply(&mut strategies);
+    }
+    Ok(NamedStrategies { name: text.to_owned(), strategies })
+}
+
+/// Every plan with every choice of strategies, where there are any.
+pub(super) fn all(
+    plans: &[NamedPlan],
+    strategies: &[NamedStrategies],
+    usual: &RenderSettings,
+) -> Vec<Variant> {
+    let drawn = |p: &NamedPlan| {
+        let settings = RenderSettings { sampling: p.plan, ..usual.clone() };
+        Variant { name: p.name.clone(), settings }
+    };
+    if strategies.is_empty() {
+        return plans.iter().map(drawn).collect();
+    }
+    let with = |p: &NamedPlan, s: &NamedStrategies| {
+        let name = if plans.len() > 1 { format!("{}, {}", p.name, s.name) } else { s.name.clone() };
+        let settings = RenderSettings { strategies: s.strategies, ..drawn(p).settings };
+        Variant { name, settings }
+    };
+    plans.iter().flat_map(|p| strategies.iter().map(move |s| with(p, s))).collect()
 }
