@@ -18,7 +18,7 @@ pub use bounds::Bounds3;
 pub use frame::Frame;
 pub use glam::{Affine3A, DVec2, DVec3, Mat3, Mat4, Quat, UVec2, Vec2, Vec3, Vec3A, Vec4, vec2, vec3};
 pub use id::Id;
-pub use motion::{Motion, Trs};
+pub use motion::{Key, Motion, Trs};
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere};
 pub use ray::{Ray, offset_ray_origin};
 pub use scalar::{find_interval, gamma, lerp, next_down, next_up, sqr};

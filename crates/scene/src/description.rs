@@ -1,6 +1,6 @@
 use crate::{Diagnostics, ParamSet, Params, Span};
 use std::{collections::HashMap, fmt};
-use tenfold_math::{Id, Motion, Transform};
+use tenfold_math::{Id, Motion};
 
 /// What a scene file says, checked for grammar only: names of types and parameters are as they were written, and mean
 /// something to the compile step alone.
@@ -108,49 +108,13 @@ impl fmt::Display for ColorSpace {
     }
 }
 
-/// A transform at two times.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct MotionSpec {
-    /// The transform at the first time.
-    pub start: Transform,
-    /// The transform at the second time.
-    pub end: Transform,
-    /// The first time, on the clock of the shutter.
-    pub start_time: f32,
-    /// The second time.
-    pub end_time: f32,
-}
-
-impl Default for MotionSpec {
-    fn default() -> Self {
-        Self::still(Transform::IDENTITY)
-    }
-}
-
-impl MotionSpec {
-    /// A transform that stands still.
-    pub fn still(t: Transform) -> Self {
-        Self { start: t, end: t, start_time: 0.0, end_time: 1.0 }
-    }
-
-    /// Whether the two transforms differ.
-    pub fn is_moving(&self) -> bool {
-        self.start.affine() != self.end.affine()
-    }
-
-    /// The motion between the two.
-    pub fn motion(&self) -> Motion {
-        Motion::new(self.start, self.start_time, self.end, self.end_time)
-    }
-}
-
 /// A camera.
 #[derive(Clone, Debug)]
 pub struct CameraEntity {
     /// Type and parameters.
     pub entity: Entity,
     /// From camera space to world space: the inverses of the transforms that were current.
-    pub world_from_camera: MotionSpec,
+    pub world_from_camera: Motion,
     /// The medium around the camera.
     pub medium: Option<Id<MediumEntity>>,
 }
@@ -170,7 +134,7 @@ pub struct ShapeEntity {
     /// Type and parameters.
     pub entity: Entity,
     /// From object space to world space; in an object's definition, to the space of the object.
-    pub motion: MotionSpec,
+    pub motion: Motion,
     /// Whether the file asks for the normals to be turned round. A transform that swaps handedness turns them as
     /// well; both together cancel.
     pub reverse_orientation: bool,
@@ -199,7 +163,7 @@ pub struct InstanceEntity {
     /// What is used.
     pub object: Id<ObjectDefinition>,
     /// From the space of the object to world space. The definition's own transform is part of its shapes' motion.
-    pub motion: MotionSpec,
+    pub motion: Motion,
     /// The directive.
     pub span: Span,
 }
@@ -210,7 +174,7 @@ pub struct LightEntity {
     /// Type and parameters.
     pub entity: Entity,
     /// From light space to world space.
-    pub motion: MotionSpec,
+    pub motion: Motion,
     /// The medium around it.
     pub medium: Option<Id<MediumEntity>>,
 }
@@ -243,7 +207,7 @@ pub struct TextureEntity {
     /// Type and parameters.
     pub entity: Entity,
     /// From texture space to world space.
-    pub motion: MotionSpec,
+    pub motion: Motion,
 }
 
 /// A participating medium.
@@ -254,7 +218,7 @@ pub struct MediumEntity {
     /// Type and parameters. The parameter `type` has become the type.
     pub entity: Entity,
     /// From medium space to world space.
-    pub motion: MotionSpec,
+    pub motion: Motion,
 }
 
 /// The value of an option.

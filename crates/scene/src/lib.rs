@@ -15,8 +15,8 @@ mod source;
 
 pub use description::{
     AreaLightId, CameraEntity, ColorSpace, Description, Entity, InstanceEntity, LightEntity, MaterialEntity,
-    MediumEntity, MediumInterface, MotionSpec, ObjectDefinition, OptionSetting, OptionValue, ShapeEntity,
-    TextureEntity, TextureValue,
+    MediumEntity, MediumInterface, ObjectDefinition, OptionSetting, OptionValue, ShapeEntity, TextureEntity,
+    TextureValue,
 };
 pub use diagnostic::{Diagnostic, Diagnostics, Note, Severity, nearest};
 pub use params::{

@@ -10,12 +10,12 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use tenfold_math::{Bounds3, Motion, Transform, Vec3};
 
-/// What is known of a placement's transform.
+/// Where a placement goes.
 #[derive(Debug)]
 enum Path {
-    Still(Transform),
-    /// The motion of an instance after the own one of a geometry, if it has one.
-    Moving(Box<(Motion, Option<Motion>)>),
+    One(Motion),
+    /// The motion of an instance after the own one of a geometry, of which one moves at least.
+    Two(Box<[Motion; 2]>),
 }
 
 /// A hierarchy placed in the world.
@@ -29,11 +29,11 @@ pub(super) struct Placement {
 impl Placement {
     fn new(hierarchy: u32, outer: &Motion, inner: Option<&Motion>) -> Self {
         let path = match inner {
-            _ if outer.is_moving() || inner.is_some_and(Motion::is_moving) => {
-                Path::Moving(Box::new((outer.clone(), inner.cloned())))
+            None => Path::One(outer.clone()),
+            Some(inner) if outer.is_moving() || inner.is_moving() => {
+                Path::Two(Box::new([outer.clone(), inner.clone()]))
             }
-            None => Path::Still(*outer.start()),
-            Some(inner) => Path::Still(*outer.start() * *inner.start()),
+            Some(inner) => Path::One(Motion::still(*outer.start() * *inner.start())),
         };
         Self { hierarchy, path }
     }
@@ -42,25 +42,20 @@ impl Placement {
     #[inline]
     pub(super) fn at(&self, time: f32) -> Transform {
         match &self.path {
-            Path::Still(transform) => *transform,
-            Path::Moving(path) => match &**path {
-                (outer, None) => outer.at(time),
-                (outer, Some(inner)) => outer.at(time) * inner.at(time),
-            },
+            Path::One(motion) => motion.at(time),
+            Path::Two(motions) => motions[0].at(time) * motions[1].at(time),
         }
     }
 
     fn bounds(&self, local: &Bounds3, [from, to]: [f32; 2]) -> Bounds3 {
-        let (swept, rounding) = match &self.path {
-            Path::Still(t) => (t.bounds(local), rounding(t, local)),
-            Path::Moving(path) => {
-                let (outer, inner) = &**path;
-                let local = inner.as_ref().map_or(*local, |inner| inner.bounds(local, from, to));
-                let swept = outer.bounds(&local, from, to);
-                (swept, rounding(&outer.at(from), &local).max(rounding(&outer.at(to), &local)))
-            }
+        let (outer, local) = match &self.path {
+            Path::One(motion) => (motion, *local),
+            Path::Two(motions) => (&motions[0], motions[1].bounds(local, from, to)),
         };
-        swept.expanded(rounding)
+        let between = outer.keys().iter().map(|key| key.time).filter(|time| from < *time && *time < to);
+        let times = between.chain([from, to]);
+        let rounding = times.map(|time| rounding(&outer.at(time), &local)).fold(0.0, f32::max);
+        outer.bounds(&local, from, to).expanded(rounding)
     }
 }
 

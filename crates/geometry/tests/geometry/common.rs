@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use tenfold_geometry::*;
 use tenfold_math::ops;
-use tenfold_math::{Id, Motion, Ray, Transform, Vec3};
+use tenfold_math::{Id, Key, Motion, Ray, Transform, Vec3};
 use tenfold_testkit::Rng;
 
 pub(crate) fn in_range(rng: &mut Rng, low: f32, high: f32) -> f32 {
@@ -113,10 +113,17 @@ pub(crate) fn random_shape(rng: &mut Rng, t: Transform) -> Shape {
     }
 }
 
+/// Through two keys or four.
 pub(crate) fn random_motion(rng: &mut Rng, spread: f32) -> Motion {
-    let start = random_similarity(rng, spread);
-    let turn = Transform::rotate(in_range(rng, 0.0, 2.5), rng.direction()).unwrap();
-    Motion::new(start, 0.0, start * turn * Transform::translate(in_box(rng, 0.8)), 1.0)
+    let mut transform = random_similarity(rng, spread);
+    let keys = if rng.below(2) == 0 { 2 } else { 4 };
+    let key = |i: usize| {
+        let key = Key { time: i as f32 / (keys - 1) as f32, transform };
+        let turn = Transform::rotate(in_range(rng, 0.0, 2.5), rng.direction()).unwrap();
+        transform = transform * turn * Transform::translate(in_box(rng, 0.8));
+        key
+    };
+    Motion::through(&(0..keys).map(key).collect::<Vec<_>>())
 }
 
 pub(crate) fn still(shape: Shape, user: u32) -> Geometry {

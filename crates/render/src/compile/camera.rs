@@ -49,7 +49,7 @@ pub(super) fn compile_camera(cx: &Context<'_>, camera: &CameraEntity, resolution
     };
     params.finish(&[]);
     Some(Camera {
-        world_from_camera: camera.world_from_camera.motion(),
+        world_from_camera: camera.world_from_camera.clone(),
         projection,
         lens: (radius > 0.0).then_some(ThinLens { radius, focal_distance }),
         shutter: shutter?,

@@ -42,7 +42,7 @@ pub(crate) fn compile_light(cx: &mut Context<'_>, light: &LightEntity) -> Option
             "a moving light is not supported yet: it stays where it is at the first time, as in pbrt-v4";
         cx.diagnostics.warning(p.span(), message);
     }
-    let t = &light.motion.start;
+    let t = light.motion.start();
     let compiled = match entity.kind.as_str() {
         "point" => point(cx, p, entity, t),
         "spot" => spot(cx, p, entity, t),

@@ -61,7 +61,7 @@ impl Shapes {
         compiler.shapes.instances = description
             .instances
             .iter()
-            .map(|i| Instance { group: Id::new(i.object.index()), motion: i.motion.motion() })
+            .map(|i| Instance { group: Id::new(i.object.index()), motion: i.motion.clone() })
             .collect();
         compiler.shapes
     }
@@ -94,7 +94,7 @@ impl Compiler<'_, '_, '_> {
         let alpha = self.textures.float(self.cx, params, "alpha");
         // What moves stays in its own space; what stands still is placed once and for all.
         let moving = entity.motion.is_moving();
-        let place = if moving { Transform::IDENTITY } else { entity.motion.start };
+        let place = if moving { Transform::IDENTITY } else { *entity.motion.start() };
         // What a shape of an unknown kind may be told is unknown, too.
         let Some(compiled) = self.shape(entity, params, &place) else { return };
         params.finish(&["emissionfilename"]);
@@ -108,7 +108,7 @@ impl Compiler<'_, '_, '_> {
             let surface = self.surface(entity, &shape, alpha, moving);
             self.shapes.geometries.push(Geometry {
                 shape,
-                motion: moving.then(|| entity.motion.motion()),
+                motion: moving.then(|| entity.motion.clone()),
                 group,
                 user: self.shapes.surfaces.len() as u32,
                 masked: surface.may_be_passed(self.materials),

@@ -499,7 +499,7 @@ impl Placed<'_> {
             let message = "textures do not move of their own: the transform of the first time counts";
             cx.diagnostics.warning(self.texture.entity.kind_span, message);
         }
-        &self.texture.motion.start
+        self.texture.motion.start()
     }
 
     fn mapping3(&self, cx: &Context<'_>) -> Mapping3 {

@@ -12,6 +12,7 @@ mod dispersion;
 mod equivalence;
 mod furnaces;
 mod illuminants;
+mod keys;
 mod lens;
 mod motion;
 mod passing;

@@ -4,13 +4,13 @@ use super::common::{area, check_pixels, clip_to_box, film, luminance, scene};
 use tenfold_math::Vec3;
 use tenfold_render::scene::Scene;
 
-const WIDTH: usize = 20;
-const HEIGHT: usize = 10;
+pub(crate) const WIDTH: usize = 20;
+pub(crate) const HEIGHT: usize = 10;
 
-type Polygon = Vec<[f64; 2]>;
+pub(crate) type Polygon = Vec<[f64; 2]>;
 
 /// Black shapes before a white sky, seen in parallel along z: x from -1 to 1, y from -0.5 to 0.5.
-fn silhouettes(camera: &str, world: &str) -> Scene {
+pub(crate) fn silhouettes(camera: &str, world: &str) -> Scene {
     scene(&format!(
         r#"Film "rgb" "integer xresolution" {WIDTH} "integer yresolution" {HEIGHT} "float exposuretime" 1
         PixelFilter "box" Sampler "zsobol" "integer pixelsamples" 64 Integrator "path" "integer maxdepth" 1
@@ -20,21 +20,21 @@ fn silhouettes(camera: &str, world: &str) -> Scene {
 }
 
 /// The camera of most tests, open from time `open` to `close`.
-fn camera(open: f64, close: f64) -> String {
+pub(crate) fn camera(open: f64, close: f64) -> String {
     format!(
         r#"Camera "orthographic" "float screenwindow" [ -1 1 -0.5 0.5 ] "float shutteropen" {open} "float shutterclose" {close}"#
     )
 }
 
 /// A polygon with corners in counter-clockwise order, as a shape at z = 3.
-fn shape(polygon: &[[f64; 2]]) -> String {
+pub(crate) fn shape(polygon: &[[f64; 2]]) -> String {
     let points: String = polygon.iter().map(|[x, y]| format!("{x} {y} 3 ")).collect();
     let fan: String = (2..polygon.len()).map(|i| format!("0 {} {i} ", i - 1)).collect();
     format!(r#"Shape "trianglemesh" "point3 P" [ {points} ] "integer indices" [ {fan} ]"#)
 }
 
 /// What every pixel sees of the sky, behind a polygon that `at` places at every time.
-fn blurred(open: f64, close: f64, at: impl Fn(f64) -> Polygon) -> Vec<f64> {
+pub(crate) fn blurred(open: f64, close: f64, at: impl Fn(f64) -> Polygon) -> Vec<f64> {
     const STEPS: usize = 1500;
     let mut covered = vec![0.0; WIDTH * HEIGHT];
     for step in 0..STEPS {
@@ -54,16 +54,16 @@ fn blurred(open: f64, close: f64, at: impl Fn(f64) -> Polygon) -> Vec<f64> {
     covered.iter().map(|c| 1.0 - c).collect()
 }
 
-fn moved(polygon: &[[f64; 2]], dx: f64, dy: f64) -> Polygon {
+pub(crate) fn moved(polygon: &[[f64; 2]], dx: f64, dy: f64) -> Polygon {
     polygon.iter().map(|[x, y]| [x + dx, y + dy]).collect()
 }
 
-fn rotated(polygon: &[[f64; 2]], degrees: f64) -> Polygon {
+pub(crate) fn rotated(polygon: &[[f64; 2]], degrees: f64) -> Polygon {
     let (s, c) = degrees.to_radians().sin_cos();
     polygon.iter().map(|[x, y]| [c * x - s * y, s * x + c * y]).collect()
 }
 
-const CARD: [[f64; 2]; 4] = [[-0.12, -0.15], [0.08, -0.15], [0.08, 0.17], [-0.12, 0.17]];
+pub(crate) const CARD: [[f64; 2]; 4] = [[-0.12, -0.15], [0.08, -0.15], [0.08, 0.17], [-0.12, 0.17]];
 
 /// A card at constant speed: every point of its path is covered for the same time.
 #[test]
@@ -132,7 +132,7 @@ fn a_wrong_speed_is_seen() {
 /// Two pictures by the same samples, which rounding alone tells apart: of all samples at most a few fall on the other side of an
 /// outline.
 #[track_caller]
-fn check_same(what: &str, a: &[Vec3], b: &[Vec3]) {
+pub(crate) fn check_same(what: &str, a: &[Vec3], b: &[Vec3]) {
     let darkest = a.iter().map(|p| p.max_element()).fold(f32::MAX, f32::min);
     assert!(darkest < 0.95, "{what}: there is nothing to see");
     let differing = a.iter().zip(b).filter(|(a, b)| (**a - **b).abs().max_element() > 1e-4).count();

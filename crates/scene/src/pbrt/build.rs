@@ -2,15 +2,15 @@
 
 use super::{
     names::Names,
-    state::{AttributeTarget, GraphicsState, Scope, ScopeKind, TransformPair},
+    state::{Active, AttributeTarget, GraphicsState, Scope, ScopeKind, Transforms},
 };
 use crate::{
     CameraEntity, ColorSpace, Description, Diagnostic, Diagnostics, Entity, InstanceEntity, LightEntity,
-    MaterialEntity, MediumEntity, MediumInterface, MotionSpec, ObjectDefinition, ParamSet, ParamType,
-    ParamValues, ShapeEntity, Span, TextureEntity, TextureValue,
+    MaterialEntity, MediumEntity, MediumInterface, ObjectDefinition, ParamSet, ParamType, ParamValues,
+    ShapeEntity, Span, TextureEntity, TextureValue,
 };
 use std::{collections::HashMap, sync::Arc};
-use tenfold_math::{Id, Transform};
+use tenfold_math::{Id, Motion, Transform};
 
 /// How deep scopes may lie in each other.
 const MAX_SCOPES: usize = 65_536;
@@ -34,8 +34,10 @@ pub(super) struct Builder<'a> {
     floor: usize,
     in_world: bool,
     complained_of_world: bool,
-    transform_times: [f32; 2],
-    coordinate_systems: HashMap<String, TransformPair>,
+    transform_times: Vec<f32>,
+    /// Where `ActiveTransform` first told keys apart.
+    keys_told_apart: Option<Span>,
+    coordinate_systems: HashMap<String, Transforms>,
     materials: Names<MaterialEntity>,
     media: Names<MediumEntity>,
     objects: Names<ObjectDefinition>,
@@ -48,7 +50,7 @@ pub(super) struct Builder<'a> {
 pub(super) struct ImportScope {
     state: GraphicsState,
     floor: usize,
-    coordinate_systems: HashMap<String, TransformPair>,
+    coordinate_systems: HashMap<String, Transforms>,
 }
 
 fn no_params(span: Span) -> ParamSet {
@@ -69,8 +71,8 @@ impl<'a> Builder<'a> {
         Self {
             description: Description::default(),
             state: GraphicsState {
-                transforms: [Transform::IDENTITY; 2],
-                active: [true; 2],
+                transforms: Transforms::Same(Transform::IDENTITY),
+                active: Active::All,
                 color_space: ColorSpace::default(),
                 reverse_orientation: false,
                 material,
@@ -83,7 +85,8 @@ impl<'a> Builder<'a> {
             floor: 0,
             in_world: false,
             complained_of_world: false,
-            transform_times: [0.0, 1.0],
+            transform_times: vec![0.0, 1.0],
+            keys_told_apart: None,
             coordinate_systems: HashMap::new(),
             materials,
             media: Names::new(),
@@ -118,51 +121,72 @@ impl<'a> Builder<'a> {
             return;
         }
         self.in_world = true;
-        self.state.transforms = [Transform::IDENTITY; 2];
-        self.state.active = [true; 2];
-        self.coordinate_systems.insert("world".to_owned(), self.state.transforms);
+        self.state.transforms = Transforms::Same(Transform::IDENTITY);
+        self.state.active = Active::All;
+        self.coordinate_systems.insert("world".to_owned(), self.state.transforms.clone());
     }
 
     // Transforms.
 
-    fn motion(&self) -> MotionSpec {
-        let [start, end] = self.state.transforms;
-        let [start_time, end_time] = self.transform_times;
-        MotionSpec { start, end, start_time, end_time }
+    fn motion(&self) -> Motion {
+        self.state.transforms.motion(&self.transform_times)
     }
 
     /// Lets the active transforms become what `change` makes of them. What has no finite inverse is reported.
     pub(super) fn transform(&mut self, span: Span, change: impl Fn(Transform) -> Transform) {
         let mut faulty = false;
-        for (transform, active) in self.state.transforms.iter_mut().zip(self.state.active) {
-            let changed = if active { change(*transform) } else { *transform };
-            if changed.affine().is_finite() && changed.inverse_affine().is_finite() {
-                *transform = changed;
-            } else {
-                faulty = true;
-            }
-        }
+        let transforms =
+            self.state.transforms.map(self.transform_times.len(), self.state.active, |current| {
+                let changed = change(current);
+                let good = changed.affine().is_finite() && changed.inverse_affine().is_finite();
+                faulty |= !good;
+                if good { changed } else { current }
+            });
+        self.state.transforms = transforms;
         if faulty {
             self.diagnostics.error(span, "with this, the current transform leaves the range of numbers");
         }
     }
 
-    pub(super) fn set_transform_times(&mut self, times: [f32; 2], span: Span) {
-        if self.check_options("TransformTimes", span) {
-            if times[1] <= times[0] {
-                self.diagnostics.warning(span, "the second time is not after the first: nothing will move");
+    /// Sets the times of the keys, of which there are two or more.
+    pub(super) fn set_transform_times(&mut self, times: Vec<f32>, span: Span) {
+        if !self.check_options("TransformTimes", span) {
+            return;
+        }
+        match self.keys_told_apart {
+            Some(apart) if times.len() != self.transform_times.len() => {
+                let (new, old) = (times.len(), self.transform_times.len());
+                let message =
+                    format!("TransformTimes with {new} keys after ActiveTransform told {old} apart");
+                self.diagnostics.push(
+                    Diagnostic::error(span, message)
+                        .with_note(apart, "this is the first one: TransformTimes belongs before it"),
+                );
             }
-            self.transform_times = times;
+            _ => self.transform_times = times,
+        }
+    }
+
+    /// How many keys there are.
+    pub(super) fn key_count(&self) -> usize {
+        self.transform_times.len()
+    }
+
+    /// Sets which transforms change.
+    pub(super) fn activate(&mut self, active: Active, span: Span) {
+        self.state.active = active;
+        if active != Active::All {
+            self.keys_told_apart.get_or_insert(span);
         }
     }
 
     pub(super) fn name_coordinate_system(&mut self, name: String) {
-        self.coordinate_systems.insert(name, self.state.transforms);
+        self.coordinate_systems.insert(name, self.state.transforms.clone());
     }
 
     pub(super) fn use_coordinate_system(&mut self, name: &str, span: Span) {
         match self.coordinate_systems.get(name) {
-            Some(transforms) => self.state.transforms = *transforms,
+            Some(transforms) => self.state.transforms = transforms.clone(),
             None => {
                 let mut known: Vec<_> = self.coordinate_systems.keys().map(String::as_str).collect();
                 known.sort_unstable();
@@ -339,18 +363,17 @@ impl<'a> Builder<'a> {
         if !self.check_options("Camera", given.span) {
             return;
         }
-        let MotionSpec { start, end, start_time, end_time } = self.motion();
         // The current transform takes the world to the camera.
-        let (start, end) = (start.inverse(), end.inverse());
-        self.coordinate_systems.insert("camera".to_owned(), [start, end]);
+        let world_from_camera =
+            self.state.transforms.map(self.key_count(), Active::All, |transform| transform.inverse());
+        let motion = world_from_camera.motion(&self.transform_times);
+        self.coordinate_systems.insert("camera".to_owned(), world_from_camera);
         let medium = self.state.media.outside;
         medium.into_iter().for_each(|id| self.media.need(id));
         let entity = self.entity(given, None);
         let span = entity.span;
-        let world_from_camera = MotionSpec { start, end, start_time, end_time };
-        if let Some(earlier) =
-            self.description.camera.replace(CameraEntity { entity, world_from_camera, medium })
-        {
+        let camera = CameraEntity { entity, world_from_camera: motion, medium };
+        if let Some(earlier) = self.description.camera.replace(camera) {
             self.replaced("Camera", span, earlier.entity.span);
         }
     }
@@ -497,7 +520,7 @@ impl<'a> Builder<'a> {
         (description.media, _) = self.media.finish("medium", diagnostics, |name, span| MediumEntity {
             name: name.to_owned(),
             entity: entity("homogeneous", span),
-            motion: MotionSpec::default(),
+            motion: Motion::default(),
         });
         (description.objects, _) = self.objects.finish("object", diagnostics, |name, span| {
             ObjectDefinition { name: name.to_owned(), shapes: Vec::new(), span }

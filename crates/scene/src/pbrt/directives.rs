@@ -2,7 +2,6 @@
 
 use super::{Parser, Reported, Token, TokenKind, build::Given, number::parse_float, state::AttributeTarget};
 use crate::{ColorSpace, Diagnostic, OptionSetting, OptionValue, Span, TextureValue, nearest};
-use tenfold_math::{Mat4, Transform, Vec3};
 
 /// All directives.
 const DIRECTIVES: [&str; 41] = [
@@ -130,10 +129,7 @@ impl Parser<'_> {
                 self.transform(token)?;
             }
             "ActiveTransform" => self.active_transform(token)?,
-            "TransformTimes" => {
-                let times = self.numbers::<2>(token)?;
-                self.builder.set_transform_times(times, span.to(self.last));
-            }
+            "TransformTimes" => self.transform_times(token)?,
             "CoordinateSystem" => {
                 let system = self.string("a name", token)?;
                 self.builder.name_coordinate_system(system.text);
@@ -232,76 +228,6 @@ impl Parser<'_> {
     ) -> Result<(), Reported> {
         let given = self.given(directive)?;
         self.builder.set(&directive.text, given, place);
-        Ok(())
-    }
-
-    fn transform(&mut self, token: &Token) -> Result<(), Reported> {
-        let replaces = matches!(token.text.as_str(), "Identity" | "Transform");
-        let transform = match token.text.as_str() {
-            "Identity" => Some(Transform::IDENTITY),
-            "Translate" => Some(Transform::translate(Vec3::from(self.numbers::<3>(token)?))),
-            "Scale" => Transform::scale(Vec3::from(self.numbers::<3>(token)?)),
-            "Rotate" => {
-                let [degrees, x, y, z] = self.numbers::<4>(token)?;
-                Transform::rotate(degrees.to_radians(), Vec3::new(x, y, z))
-            }
-            "LookAt" => {
-                let v = self.numbers::<9>(token)?;
-                let [eye, look, up] = [0, 3, 6].map(|i| Vec3::from_slice(&v[i..]));
-                Transform::look_at(eye, look, up)
-            }
-            _ => {
-                self.bracket(TokenKind::Open, token)?;
-                // The file has the columns one after the other.
-                let matrix = Mat4::from_cols_array(&self.numbers::<16>(token)?);
-                self.bracket(TokenKind::Close, token)?;
-                Transform::from_mat4(matrix)
-            }
-        };
-        let span = token.span.to(self.last);
-        let Some(transform) = transform else {
-            let why = match token.text.as_str() {
-                "Scale" => "Scale by zero has no inverse",
-                "Rotate" => "Rotate needs an axis that is not zero",
-                "LookAt" => {
-                    "LookAt needs an eye away from the point looked at, and an up direction aside from the view"
-                }
-                _ => "this matrix is not affine (its last row is not 0 0 0 1) or has no inverse",
-            };
-            return self.fail(span, why.to_owned());
-        };
-        self.builder.transform(span, |current| if replaces { transform } else { current * transform });
-        Ok(())
-    }
-
-    fn bracket(&mut self, kind: TokenKind, directive: &Token) -> Result<(), Reported> {
-        let name = if kind == TokenKind::Open { "`[`" } else { "`]`" };
-        let token = self.required(name, directive)?;
-        if token.kind == kind {
-            return Ok(());
-        }
-        let message =
-            format!("{} needs 16 numbers in brackets, found {} for {name}", directive.text, token.shown());
-        let span = token.span;
-        self.stream.hold(token);
-        self.fail(span, message)
-    }
-
-    fn active_transform(&mut self, directive: &Token) -> Result<(), Reported> {
-        let which = self.required("All, StartTime or EndTime", directive)?;
-        self.builder.state.active = match which.text.as_str() {
-            "All" => [true, true],
-            "StartTime" => [true, false],
-            "EndTime" => [false, true],
-            _ => {
-                let message =
-                    format!("ActiveTransform needs All, StartTime or EndTime, found {}", which.shown());
-                let error = Diagnostic::error(which.span, message);
-                self.diagnostics.push(error.with_nearest(&which.text, ["All", "StartTime", "EndTime"]));
-                self.stream.hold(which);
-                return Err(Reported);
-            }
-        };
         Ok(())
     }
 

@@ -9,6 +9,7 @@ mod number;
 mod parameters;
 mod state;
 mod stream;
+mod transforms;
 
 use crate::{Description, Diagnostic, Diagnostics, FileResources, Resources, SourceMap, Span};
 use build::Builder;
@@ -144,25 +145,28 @@ impl<'a> Parser<'a> {
         let mut values = [0.0; N];
         for (i, value) in values.iter_mut().enumerate() {
             let token = self.required(&format!("{N} numbers"), directive)?;
-            let read = match token.kind {
-                TokenKind::Word => number::parse_float(&token.text),
-                _ => Err(number::NumberFault::NotANumber),
-            };
-            *value = match read {
-                Ok(value) => value,
-                Err(fault) => {
-                    let shown = token.shown();
-                    let message = match fault {
-                        number::NumberFault::OutOfRange => format!("{shown} is beyond the range of numbers"),
-                        _ => format!("{} needs {N} numbers, found {shown} after {i}", directive.text),
-                    };
-                    let span = token.span;
-                    self.stream.hold(token);
-                    return self.fail(span, message);
-                }
-            };
+            let other = || format!("{} needs {N} numbers, found {} after {i}", directive.text, token.shown());
+            *value = self.number(&token, other)?;
         }
         Ok(values)
+    }
+
+    /// The number that a token is; reports `other` where it is something else.
+    fn number(&mut self, token: &Token, other: impl FnOnce() -> String) -> Result<f32, Reported> {
+        let read = match token.kind {
+            TokenKind::Word => number::parse_float(&token.text),
+            _ => Err(number::NumberFault::NotANumber),
+        };
+        read.or_else(|fault| {
+            let message = match fault {
+                number::NumberFault::OutOfRange => {
+                    format!("{} is beyond the range of numbers", token.shown())
+                }
+                _ => other(),
+            };
+            self.stream.hold(token.clone());
+            self.fail(token.span, message)
+        })
     }
 
     /// Reports a fault that ends the reading of a directive.

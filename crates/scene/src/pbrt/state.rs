@@ -2,10 +2,67 @@
 
 use crate::{AreaLightId, ColorSpace, MaterialEntity, MediumInterface, Param, Span};
 use std::sync::Arc;
-use tenfold_math::{Id, Transform};
+use tenfold_math::{Id, Key, Motion, Transform};
 
-/// The current transforms, at the first and at the second of the transform times.
-pub(super) type TransformPair = [Transform; 2];
+/// The current transforms, at each of the transform times.
+#[derive(Clone, Debug)]
+pub(super) enum Transforms {
+    /// At all times.
+    Same(Transform),
+    /// At each of them.
+    Each(Arc<[Transform]>),
+}
+
+impl Transforms {
+    /// The transforms at `count` times, with those that are active as `change` makes them.
+    pub(super) fn map(
+        &self,
+        count: usize,
+        active: Active,
+        mut change: impl FnMut(Transform) -> Transform,
+    ) -> Self {
+        match (self, active) {
+            (Self::Same(t), Active::All) => Self::Same(change(*t)),
+            _ => Self::Each(
+                (0..count)
+                    .map(|i| if active.includes(i) { change(self.at(i)) } else { self.at(i) })
+                    .collect(),
+            ),
+        }
+    }
+
+    fn at(&self, key: usize) -> Transform {
+        match self {
+            Self::Same(t) => *t,
+            Self::Each(each) => each[key],
+        }
+    }
+
+    /// The motion through them.
+    pub(super) fn motion(&self, times: &[f32]) -> Motion {
+        match self {
+            Self::Same(t) => Motion::still(*t),
+            Self::Each(each) => {
+                let keys = times.iter().zip(&**each);
+                Motion::through(&keys.map(|(&time, &transform)| Key { time, transform }).collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+/// Which of the transforms the transform directives change.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub(super) enum Active {
+    All,
+    /// That of the key with this index.
+    Key(usize),
+}
+
+impl Active {
+    fn includes(self, key: usize) -> bool {
+        self == Self::All || self == Self::Key(key)
+    }
+}
 
 /// A family of entities that `Attribute` can give default parameters.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -30,9 +87,8 @@ impl AttributeTarget {
 /// What `AttributeBegin` saves and `AttributeEnd` brings back (pbrt book, 4th edition, §C.2.3).
 #[derive(Clone, Debug)]
 pub(super) struct GraphicsState {
-    pub(super) transforms: TransformPair,
-    /// Which of the two transforms the transform directives change.
-    pub(super) active: [bool; 2],
+    pub(super) transforms: Transforms,
+    pub(super) active: Active,
     pub(super) color_space: ColorSpace,
     pub(super) reverse_orientation: bool,
     pub(super) material: Id<MaterialEntity>,

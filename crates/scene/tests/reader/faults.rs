@@ -3,7 +3,7 @@
 use crate::{Files, read, read_with, world_findings};
 
 /// Every scene and all that is to be found in it. The name of the file, `s`, is left out.
-const SCENES: [(&str, &[&str]); 71] = [
+const SCENES: [(&str, &[&str]); 79] = [
     // Strings and files that break off.
     ("", &["1:1: error: the file ends without WorldBegin"]),
     ("Film \"rgb\"", &["1:11: error: the file ends without WorldBegin"]),
@@ -27,7 +27,9 @@ const SCENES: [(&str, &[&str]); 71] = [
     ("WorldBegin Include", &["1:12: error: the file ends where Include needs the name of a file"]),
     (
         "WorldBegin ActiveTransform",
-        &["1:12: error: the file ends where ActiveTransform needs All, StartTime or EndTime"],
+        &[
+            "1:12: error: the file ends where ActiveTransform needs All, StartTime, EndTime or the index of a key",
+        ],
     ),
     (
         "Option \"seed\"\nWorldBegin",
@@ -183,9 +185,35 @@ const SCENES: [(&str, &[&str]); 71] = [
         &["1:1: warning: the second time is not after the first: nothing will move"],
     ),
     (
+        "TransformTimes 0 [ 1 ] WorldBegin",
+        &["1:18: error: TransformTimes needs 2 numbers, found `[` after 1"],
+    ),
+    ("TransformTimes [ 1 ] WorldBegin", &["1:1: error: TransformTimes needs 2 times or more, found 1"]),
+    ("TransformTimes [ ] WorldBegin", &["1:1: error: TransformTimes needs 2 times or more, found 0"]),
+    (
+        "TransformTimes [ 0 0.5 0.5 ] WorldBegin",
+        &["1:24: error: the times of keys must increase: 0.5 is not after 0.5"],
+    ),
+    (
+        "TransformTimes [ 0 1 \"2\" ] WorldBegin",
+        &["1:22: error: TransformTimes needs numbers, found the string \"2\""],
+    ),
+    ("WorldBegin TransformTimes [ 0 1 ", &["1:12: error: the file ends where TransformTimes needs `]`"]),
+    (
+        "TransformTimes [ 0 1 2 ] ActiveTransform 3 WorldBegin ActiveTransform 2 ActiveTransform -1",
+        &[
+            "1:42: error: there is no key 3: the 3 keys have indices 0 to 2 (TransformTimes [ t0 t1 t2 ] gives times to more keys)",
+            "1:89: error: ActiveTransform needs All, StartTime, EndTime or the index of a key, found `-1`",
+        ],
+    ),
+    (
+        "ActiveTransform EndTime Translate 1 0 0 TransformTimes [ 0 1 2 ] TransformTimes 0 2 WorldBegin",
+        &["1:41: error: TransformTimes with 3 keys after ActiveTransform told 2 apart"],
+    ),
+    (
         "WorldBegin ActiveTransform Endtime",
         &[
-            "1:28: error: ActiveTransform needs All, StartTime or EndTime, found `Endtime` (did you mean \"EndTime\"?)",
+            "1:28: error: ActiveTransform needs All, StartTime, EndTime or the index of a key, found `Endtime` (did you mean \"EndTime\"?)",
         ],
     ),
     // Order and nesting.

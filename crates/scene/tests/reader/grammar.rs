@@ -1,7 +1,7 @@
 //! What every directive does.
 
 use crate::{Files, read, read_clean, read_with};
-use tenfold_math::{Transform, Vec3};
+use tenfold_math::{Motion, Transform, Vec3};
 use tenfold_scene::{ColorSpace, OptionValue, ParamValues, TextureValue};
 
 fn near(a: &Transform, b: &Transform) -> bool {
@@ -41,13 +41,13 @@ fn transforms_multiply_from_the_right() {
         ConcatTransform [ 1 0 0 0  0 1 0 0  0 0 1 0  1 1 1 1 ] Shape "sphere"
         Identity LookAt 0 2 6  0 0 0  0 1 0 Shape "sphere""#,
     );
-    let at = |i: usize, p: [f32; 3]| d.shapes[i].motion.start.point(Vec3::from(p));
+    let at = |i: usize, p: [f32; 3]| d.shapes[i].motion.start().point(Vec3::from(p));
     assert!((at(0, [1.0, 0.0, 1.0]) - Vec3::new(1.0, 4.0, 7.0)).length() < 1e-5);
     assert_eq!(at(1, [1.0, 2.0, 3.0]), Vec3::new(1.0, 2.0, 3.0));
     assert_eq!(at(2, [1.0, 1.0, 1.0]), Vec3::new(5.0, 7.0, 9.0));
     assert_eq!(at(3, [0.0, 0.0, 0.0]), Vec3::new(5.0, 7.0, 9.0));
     let look = Transform::look_at(Vec3::new(0.0, 2.0, 6.0), Vec3::ZERO, Vec3::Y).unwrap();
-    assert_eq!(d.shapes[4].motion.start, look);
+    assert_eq!(*d.shapes[4].motion.start(), look);
     assert!(!d.shapes[4].motion.is_moving());
 }
 
@@ -65,16 +65,16 @@ fn the_camera_gets_the_inverse_and_names_its_system() {
     );
     let camera = d.camera.unwrap();
     let motion = camera.world_from_camera;
-    assert_eq!((motion.start_time, motion.end_time), (0.25, 0.75));
-    assert!((motion.start.point(Vec3::ZERO) - Vec3::new(0.0, 0.0, 5.0)).length() < 1e-6);
+    let [start, end] = motion.keys() else { panic!("{motion:?}") };
+    assert_eq!((start.time, end.time), (0.25, 0.75));
+    assert!((start.transform.point(Vec3::ZERO) - Vec3::new(0.0, 0.0, 5.0)).length() < 1e-6);
     // The world moves to +z, so the camera moves to -z.
-    assert!((motion.end.point(Vec3::ZERO) - Vec3::new(0.0, 0.0, 4.0)).length() < 1e-6);
+    assert!((end.transform.point(Vec3::ZERO) - Vec3::new(0.0, 0.0, 4.0)).length() < 1e-6);
     // WorldBegin brings back the identity and both transforms; the camera's system has both keys.
-    assert_eq!(d.shapes[0].motion.start, Transform::IDENTITY);
-    assert!(!d.shapes[0].motion.is_moving());
-    assert_eq!((d.shapes[0].motion.start_time, d.shapes[0].motion.end_time), (0.25, 0.75));
-    assert!(near(&d.shapes[1].motion.start, &motion.start) && near(&d.shapes[1].motion.end, &motion.end));
-    assert_eq!(d.shapes[2].motion.end, Transform::IDENTITY);
+    assert_eq!(d.shapes[0].motion, Motion::default());
+    let [first, second] = d.shapes[1].motion.keys() else { panic!("{:?}", d.shapes[1].motion) };
+    assert!(near(&first.transform, &start.transform) && near(&second.transform, &end.transform));
+    assert_eq!(d.shapes[2].motion, Motion::default());
 }
 
 #[test]
@@ -93,13 +93,54 @@ fn active_transforms_are_saved_and_set_apart() {
     );
     let keys = |i: usize| {
         let m = &d.shapes[i].motion;
-        (m.start.point(Vec3::ZERO).to_array(), m.end.point(Vec3::ZERO).to_array())
+        (m.at(0.0).point(Vec3::ZERO).to_array(), m.at(1.0).point(Vec3::ZERO).to_array())
     };
     assert_eq!(keys(0), ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
     assert_eq!(keys(1), ([2.0, 0.0, 0.0], [0.0, 0.0, 0.0]));
     assert_eq!(keys(2), ([2.0, 0.0, 1.0], [0.0, 0.0, 1.0]));
     assert_eq!(keys(3), ([5.0, 0.0, 0.0], [5.0, 0.0, 0.0]));
-    assert!(d.shapes[0].motion.motion().is_moving());
+    assert!(d.shapes[0].motion.is_moving());
+}
+
+#[test]
+fn any_number_of_keys_has_transforms_of_its_own() {
+    let d = read_clean(
+        r#"TransformTimes [ 0 0.25 1 ]
+        ActiveTransform 1 Translate 0 0 -4
+        Camera "perspective"
+        WorldBegin
+        Translate 1 0 0
+        ActiveTransform 1 Translate 0 1 0
+        ActiveTransform EndTime Translate 0 0 1 CoordinateSystem "here" Shape "sphere"
+        ActiveTransform 2 Translate 0 0 1
+        ActiveTransform StartTime Translate 0 3 0
+        ActiveTransform All Translate 1 0 0 Shape "sphere"
+        CoordSysTransform "here" Shape "sphere"
+        CoordSysTransform "camera" Shape "sphere""#,
+    );
+    let keys = |m: &Motion| -> Vec<_> {
+        m.keys().iter().map(|k| (k.time, k.transform.point(Vec3::ZERO).to_array())).collect()
+    };
+    let here = [(0.0, [1.0, 0.0, 0.0]), (0.25, [1.0, 1.0, 0.0]), (1.0, [1.0, 0.0, 1.0])];
+    assert_eq!(keys(&d.shapes[0].motion), here);
+    assert_eq!(
+        keys(&d.shapes[1].motion),
+        [(0.0, [2.0, 3.0, 0.0]), (0.25, [2.0, 1.0, 0.0]), (1.0, [2.0, 0.0, 2.0])]
+    );
+    assert_eq!(keys(&d.shapes[2].motion), here);
+    let camera = keys(&d.camera.unwrap().world_from_camera);
+    assert_eq!(camera, [(0.0, [0.0; 3]), (0.25, [0.0, 0.0, 4.0]), (1.0, [0.0; 3])]);
+    assert_eq!(keys(&d.shapes[3].motion), camera);
+}
+
+#[test]
+fn two_times_in_brackets_are_those_of_pbrt() {
+    let world = r#"WorldBegin ActiveTransform EndTime Translate 1 2 3 Shape "sphere""#;
+    let motion = |times: &str| read_clean(&format!("{times} {world}")).shapes[0].motion.clone();
+    assert_eq!(motion("TransformTimes 0.2 0.7"), motion("TransformTimes [ 0.2 0.7 ]"));
+    assert_eq!(motion(""), motion("TransformTimes 0 1"));
+    // Nothing was told apart yet: the number of keys may still change.
+    assert_eq!(motion("TransformTimes [ 0 1 2 ] Translate 0 0 0 TransformTimes 0 1"), motion(""));
 }
 
 #[test]
@@ -109,7 +150,7 @@ fn coordinate_systems_outlive_attribute_scopes() {
         AttributeBegin Translate 1 2 3 CoordinateSystem "here" AttributeEnd
         Translate 9 9 9 CoordSysTransform "here" Shape "sphere""#,
     );
-    assert_eq!(d.shapes[0].motion.start.point(Vec3::ZERO), Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(d.shapes[0].motion.start().point(Vec3::ZERO), Vec3::new(1.0, 2.0, 3.0));
 }
 
 #[test]
@@ -196,7 +237,7 @@ fn media_interfaces_take_one_name_or_two() {
     assert_eq!((name(d.shapes[1].media.inside), name(d.lights[1].medium)), (None, None));
     let smoke = d.media.iter().find(|m| m.name == "smoke").unwrap();
     assert_eq!(smoke.entity.kind, "uniformgrid");
-    assert_eq!(smoke.motion.start.point(Vec3::ZERO), Vec3::X);
+    assert_eq!(smoke.motion.start().point(Vec3::ZERO), Vec3::X);
 }
 
 #[test]
@@ -213,7 +254,7 @@ fn textures_are_named_by_what_they_give() {
         (TextureValue::Spectrum, "imagemap")
     );
     assert_eq!(d.textures[1].name, "t");
-    assert_eq!(d.textures[1].motion.start.point(Vec3::X), Vec3::new(2.0, 0.0, 0.0));
+    assert_eq!(d.textures[1].motion.start().point(Vec3::X), Vec3::new(2.0, 0.0, 0.0));
 }
 
 #[test]
@@ -236,17 +277,17 @@ fn objects_keep_their_own_transform() {
     assert_eq!(found, [light]);
     assert_eq!(d.objects.len(), 1);
     let shapes = &d.objects[0].shapes;
-    assert_eq!(shapes[0].motion.start.point(Vec3::ZERO), Vec3::new(1.0, 1.0, 0.0));
-    assert_eq!(shapes[1].motion.end.point(Vec3::ZERO), Vec3::new(1.0, 1.0, 1.0));
+    assert_eq!(shapes[0].motion.start().point(Vec3::ZERO), Vec3::new(1.0, 1.0, 0.0));
+    assert_eq!(shapes[1].motion.at(1.0).point(Vec3::ZERO), Vec3::new(1.0, 1.0, 1.0));
     assert_eq!(shapes[2].area_light, None);
     // What is set inside the object ends with it.
     assert_eq!(d.shapes.len(), 1);
     assert_eq!(d.shapes[0].area_light, None);
-    assert_eq!(d.shapes[0].motion.start.point(Vec3::ZERO), Vec3::X);
+    assert_eq!(d.shapes[0].motion.start().point(Vec3::ZERO), Vec3::X);
     assert_eq!(d.instances.len(), 2);
     assert!(d.instances.iter().all(|i| i.object.index() == 0));
-    assert_eq!(d.instances[0].motion.start, Transform::IDENTITY);
-    assert_eq!(d.instances[1].motion.end.point(Vec3::ZERO), Vec3::new(6.0, 5.0, 0.0));
+    assert_eq!(d.instances[0].motion, Motion::default());
+    assert_eq!(d.instances[1].motion.at(1.0).point(Vec3::ZERO), Vec3::new(6.0, 5.0, 0.0));
 }
 
 #[test]
@@ -316,7 +357,7 @@ fn includes_share_the_state_and_imports_do_not() {
     let missing =
         "s:7:27: warning: coordinate system \"inner\" is not defined: the directive does nothing".to_owned();
     assert_eq!(found, [missing]);
-    let x: Vec<_> = d.shapes.iter().map(|s| s.motion.start.point(Vec3::ZERO).to_array()).collect();
+    let x: Vec<_> = d.shapes.iter().map(|s| s.motion.start().point(Vec3::ZERO).to_array()).collect();
     assert_eq!(x, [[1., 0., 0.], [1., 0., 0.], [0., 0., 0.], [1., 0., 0.], [1., 0., 0.], [1., 0., 0.]]);
     assert_eq!(d.objects.iter().map(|o| o.shapes.len()).collect::<Vec<_>>(), [1, 2]);
     // A list of parameters may go on after the file that it begins in.

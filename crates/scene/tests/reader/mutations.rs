@@ -7,7 +7,7 @@ use tenfold_scene::read_ply;
 const SCENE: &str = r#"# A scene with a little of everything, é.
 Option "disablepixeljitter" true
 Film "rgb" "integer xresolution" 640 "integer yresolution" [ 480 ] "string filename" "a.exr"
-TransformTimes 0 1 LookAt 0 2 6  0 0.5 0  0 1 0
+TransformTimes [ 0 0.4 1 ] LookAt 0 2 6  0 0.5 0  0 1 0
 Camera "perspective" "float fov" 38 "float shutteropen" [ 0 ]
 ColorSpace "rec2020" MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ]
 WorldBegin
@@ -16,7 +16,7 @@ Texture "holes" "float" "checkerboard" "float uscale" 6 "float tex1" 1e-3
 MakeNamedMaterial "m" "string type" [ "conductor" ] "spectrum eta" "metal-Au-eta" "spectrum k" [ 400 1 500 2 ]
 ObjectBegin "tree" NamedMaterial "m" AttributeBegin Rotate -90 1 0 0
 Shape "cylinder" "float radius" 0.07 "float zmin" 0 ReverseOrientation AttributeEnd ObjectEnd
-AttributeBegin Translate -1.6 0 0 ActiveTransform EndTime Scale 1 2 3 ActiveTransform All ObjectInstance "tree" AttributeEnd
+AttributeBegin Translate -1.6 0 0 ActiveTransform 1 Scale 1 2 3 ActiveTransform All ObjectInstance "tree" AttributeEnd
 LightSource "infinite" "rgb L" [ 0.4 0.45 0.5 ] "blackbody b" 3000 CoordinateSystem "c" CoordSysTransform "camera"
 MediumInterface "fog" "" AreaLightSource "diffuse" "bool twosided" true
 Shape "trianglemesh" "point3 P" [ -8 0 -8  -8 0 8  8 0 8 ] "integer indices" [ 0 1 2 ] "string s" "a\"\\"
