@@ -5,12 +5,12 @@ use crate::{
     lab::{self, LabArgs},
     pbrt_options,
     progress::Style,
+    sampling::{self, SamplerChoice},
     strategy::{self, Strategy},
 };
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum, builder::styling};
 use std::{ffi::OsString, path::PathBuf};
 use tenfold_render::{integrator::DispersionRule, schedule};
-use tenfold_sampling::{Mapped, SamplerKind};
 
 pub(crate) const STYLES: styling::Styles = styling::Styles::styled()
     .header(styling::AnsiColor::Green.on_default().bold())
@@ -94,10 +94,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", help_heading = "Sampling")]
     pub(crate) seed: Option<u64>,
 
-    /// independent, jittered (or stratified), n-rooks, multi-jittered, halton, paddedsobol or zsobol [default: what the scene
-    /// says]
-    #[arg(long, value_name = "NAME", value_parser = sampler, help_heading = "Sampling")]
-    pub(crate) sampler: Option<Mapped>,
+    /// independent, jittered, n-rooks, multi-jittered, halton, sobol or zsobol (blue noise), for all variables or for some
+    /// (lens=n-rooks,time=jittered): pixel, lens, time, wavelength, light, scatter, ... [default: what the scene says]
+    #[arg(long, value_name = "[VARIABLE=]NAME,...", value_parser = sampling::sampler, value_delimiter = ',',
+          help_heading = "Sampling")]
+    pub(crate) sampler: Vec<SamplerChoice>,
 
     /// How lights and directions are sampled; the picture is the same for all but for its noise. Several with commas between:
     /// light=uniform-area, solid-angle or by-texture; scatter=uniform, cosine or bsdf; combine=mis, light-only or bsdf-only
@@ -234,14 +235,12 @@ pub(crate) fn list<T: std::str::FromStr + PartialOrd + Copy, const N: usize>(
         .ok_or_else(|| format!("expected {N} numbers with commas between, and no blanks"))
 }
 
-pub(crate) fn sampler(name: &str) -> Result<Mapped, String> {
-    SamplerKind::from_pbrt(name).ok_or_else(|| {
-        let known: Vec<_> = SamplerKind::ALL.iter().map(|kind| kind.name()).chain(["jittered"]).collect();
-        match tenfold_scene::nearest(name, known.iter().copied()) {
-            Some(near) => format!("there is no such sampler; did you mean {near}?"),
-            None => format!("there is no such sampler; there are {}", known.join(", ")),
-        }
-    })
+/// What to say of a name that means nothing.
+pub(crate) fn unknown(what: &str, name: &str, known: &[&str]) -> String {
+    match tenfold_scene::nearest(name, known.iter().copied()) {
+        Some(near) => format!("there is no {what} \"{name}\"; did you mean {near}?"),
+        None => format!("there is no {what} \"{name}\"; there are {}", known.join(", ")),
+    }
 }
 
 /// A level or a filter; pbrt's levels are known too.
@@ -293,6 +292,9 @@ mod tests {
             "--pixel 1,2,3",
             "--pixel 1,1 --pixelbounds 0,1,0,1",
             "--sampler zsobl",
+            "--sampler lans=zsobol",
+            "--sampler lens=",
+            "--sampler zsobol,",
             "--dispersion other",
             "--strategy light=dark",
             "--strategy scatter=bsdf,combine",

@@ -16,6 +16,7 @@ mod output;
 mod pbrt_options;
 mod progress;
 mod report;
+mod sampling;
 mod strategy;
 mod units;
 mod work;

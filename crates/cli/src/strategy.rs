@@ -1,5 +1,6 @@
 //! `--strategy`: how variables are sampled.
 
+use crate::args::unknown;
 use tenfold_render::{
     bxdf::ScatterStrategy,
     integrator::{CombineStrategy, Strategies},
@@ -46,13 +47,6 @@ fn member<T: Copy, const N: usize>(
 ) -> Result<T, String> {
     let found = all.into_iter().find(|&one| name_of(one) == name);
     found.ok_or_else(|| unknown("strategy", name, &all.map(name_of)))
-}
-
-fn unknown(what: &str, name: &str, known: &[&str]) -> String {
-    match tenfold_scene::nearest(name, known.iter().copied()) {
-        Some(near) => format!("there is no {what} {name}; did you mean {near}?"),
-        None => format!("there is no {what} {name}; there are {}", known.join(", ")),
-    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::{
     output::{self, Picture, Target},
     progress::{Reporter, json},
     report,
+    sampling::{self, SamplerChoice},
     units::{bytes, plural},
 };
 use serde_json::json;
@@ -85,11 +86,9 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     let spp = args.spp.or(args.quick.then_some(1));
     settings.spp = spp.unwrap_or(settings.spp);
     settings.seed = args.seed.unwrap_or(settings.seed);
-    if let Some(mapped) = args.sampler {
-        settings.sampling = mapped.kind.into();
-        if let Some(note) = mapped.note.filter(|_| !args.quiet) {
-            say(&format!("note: {note}"));
-        }
+    sampling::apply(&args.sampler, &mut settings.sampling);
+    if !args.quiet {
+        args.sampler.iter().filter_map(SamplerChoice::note).for_each(|note| say(&format!("note: {note}")));
     }
     settings.threads = NonZeroUsize::new(args.nthreads.into());
     settings.tile_side = args.tile_size;

@@ -6,6 +6,7 @@
 
 mod dimension;
 pub mod distribution;
+mod group;
 pub mod hash;
 mod sampler;
 pub mod warp;

@@ -1,6 +1,6 @@
 //! Ways to render, as the command line names them to be compared: the parts of one with `+` between.
 
-use crate::{args::sampler, strategy};
+use crate::{sampling, strategy};
 use tenfold_lab::convergence::Variant;
 use tenfold_render::{integrator::Strategies, schedule::RenderSettings};
 use tenfold_sampling::SamplePlan;
@@ -21,7 +21,7 @@ pub(super) struct NamedStrategies {
 
 /// Understands one of `--samplers`.
 pub(super) fn plan(text: &str) -> Result<NamedPlan, String> {
-    Ok(NamedPlan { name: text.to_owned(), plan: sampler(text)?.kind.into() })
+    Ok(NamedPlan { name: text.to_owned(), plan: sampling::kind(text)?.kind.into() })
 }
 
 /// Understands one of `--strategies`.

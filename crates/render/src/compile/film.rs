@@ -181,18 +181,7 @@ pub(super) fn compile_sampler(cx: &Context<'_>, entity: Option<&Entity>) -> Samp
     let Some(entity) = entity else { return default };
     let params = entity.params("sampler", cx.diagnostics);
     let Some(mapped) = SamplerKind::from_pbrt(&entity.kind) else {
-        let known = [
-            "halton",
-            "independent",
-            "jittered",
-            "multi-jittered",
-            "n-rooks",
-            "paddedsobol",
-            "pmj02bn",
-            "sobol",
-            "stratified",
-            "zsobol",
-        ];
+        let known = SamplerKind::all_names().chain(["pmj02bn"]);
         cx.unknown_kind(entity.kind_span, "sampler", &entity.kind, known);
         return default;
     };

@@ -41,51 +41,62 @@ impl SamplerKind {
         Self::Halton,
     ];
 
-    /// The name in scene files, which is pbrt's where it has one.
+    /// The name.
     pub const fn name(self) -> &'static str {
+        self.names()[0]
+    }
+
+    /// All names, which are pbrt's where it has one, the first the one to be shown.
+    pub const fn names(self) -> &'static [&'static str] {
         match self {
-            Self::Independent => "independent",
-            Self::Stratified => "stratified",
-            Self::ZSobol => "zsobol",
-            Self::PaddedSobol => "paddedsobol",
-            Self::NRooks => "n-rooks",
-            Self::MultiJittered => "multi-jittered",
-            Self::Halton => "halton",
+            Self::Independent => &["independent"],
+            Self::Stratified => &["jittered", "stratified"],
+            Self::ZSobol => &["zsobol", "blue-noise", "blue-noise-sobol"],
+            Self::PaddedSobol => &["sobol", "paddedsobol"],
+            Self::NRooks => &["n-rooks"],
+            Self::MultiJittered => &["multi-jittered"],
+            Self::Halton => &["halton"],
         }
     }
 
-    /// The kind of that name, or the nearest to the sampler of that name in pbrt-v4. `jittered` is another name of `stratified`.
+    /// All names of all kinds.
+    pub fn all_names() -> impl Iterator<Item = &'static str> {
+        Self::ALL.into_iter().flat_map(|kind| kind.names().iter().copied())
+    }
+
+    /// The kind of that name, or the nearest to the sampler of that name in pbrt-v4; `None` where there is none.
+    /// pbrt's `sobol` takes all dimensions from one sequence, its `paddedsobol` pairs by pairs, which is the one here.
     pub fn from_pbrt(name: &str) -> Option<Mapped> {
-        if let Some(kind) = Self::ALL.into_iter().find(|k| k.name() == name) {
+        if let Some(kind) = Self::ALL.into_iter().find(|k| k.names().contains(&name)) {
             return Some(Mapped { kind, note: None });
         }
-        if name == "jittered" {
-            return Some(Mapped { kind: Self::Stratified, note: None });
-        }
-        let note = match name {
-            "sobol" => "the sampler \"sobol\" is replaced by \"zsobol\"",
-            "pmj02bn" => "the sampler \"pmj02bn\" is replaced by \"zsobol\"",
-            _ => return None,
-        };
-        Some(Mapped { kind: Self::ZSobol, note: Some(note) })
+        // Progressive multi-jittered (0, 2) points (Christensen, Kensler and Kilpatrick 2018) have the strata of Owen-scrambled
+        // Sobol' pairs, and no more.
+        let note = "the sampler \"pmj02bn\" is replaced by \"sobol\", whose pairs have the same strata";
+        (name == "pmj02bn").then_some(Mapped { kind: Self::PaddedSobol, note: Some(note) })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::HashSet;
 
     #[test]
-    fn names_of_pbrt_map_to_the_nearest_kind() {
+    fn every_name_means_one_kind() {
+        let mut seen = HashSet::new();
         for kind in SamplerKind::ALL {
-            assert_eq!(SamplerKind::from_pbrt(kind.name()), Some(Mapped { kind, note: None }));
+            for name in kind.names() {
+                assert_eq!(SamplerKind::from_pbrt(name), Some(Mapped { kind, note: None }));
+                assert!(seen.insert(name));
+            }
         }
-        let jittered = Mapped { kind: SamplerKind::Stratified, note: None };
-        assert_eq!(SamplerKind::from_pbrt("jittered"), Some(jittered));
-        for name in ["sobol", "pmj02bn"] {
-            let mapped = SamplerKind::from_pbrt(name).unwrap();
-            assert!(mapped.kind == SamplerKind::ZSobol && mapped.note.unwrap().contains(name));
+        assert!(SamplerKind::all_names().all(|name| seen.contains(&name)));
+        for (name, kind) in [("sobol", SamplerKind::PaddedSobol), ("jittered", SamplerKind::Stratified)] {
+            assert_eq!(SamplerKind::from_pbrt(name).unwrap().kind, kind);
         }
+        let mapped = SamplerKind::from_pbrt("pmj02bn").unwrap();
+        assert!(mapped.kind == SamplerKind::PaddedSobol && mapped.note.unwrap().contains("pmj02bn"));
         assert_eq!(SamplerKind::from_pbrt("random"), None);
     }
 }
