@@ -5,7 +5,7 @@ use crate::{
     lab::{self, LabArgs},
     pbrt_options,
     progress::Style,
-    sampling::{self, SamplerChoice},
+    sampling::{self, Freeze, SamplerChoice},
     strategy::{self, Strategy},
 };
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum, builder::styling};
@@ -106,6 +106,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "VARIABLE=NAME", value_parser = strategy::parse, value_delimiter = ',',
           help_heading = "Sampling")]
     pub(crate) strategy: Vec<Strategy>,
+
+    /// Hold variables at a value (time=0.5,lens,light,...), in the middle where none is given: their effects are absent. The
+    /// wavelength is in nm; dispersion[=NM] has all light refracted alike
+    #[arg(long, value_name = "VARIABLE[=VALUE],...", value_parser = sampling::freeze, value_delimiter = ',',
+          help_heading = "Sampling")]
+    pub(crate) freeze: Vec<Freeze>,
 
     /// What the other wavelengths do at dispersive glass: go ways of their own, or end there as in pbrt
     #[arg(long, value_name = "RULE", value_enum, default_value = "split", help_heading = "Sampling")]
@@ -295,6 +301,10 @@ mod tests {
             "--sampler lans=zsobol",
             "--sampler lens=",
             "--sampler zsobol,",
+            "--freeze lans",
+            "--freeze time=1",
+            "--freeze time=",
+            "--freeze wavelength=0.5",
             "--dispersion other",
             "--strategy light=dark",
             "--strategy scatter=bsdf,combine",

@@ -9,7 +9,7 @@ use std::{
 use tenfold_image::{Attribute, Format, Image, Metadata, PngDepth, Window, WriteOptions, write_atomic};
 use tenfold_render::{
     scene::Scene,
-    schedule::{Render, RenderSettings},
+    schedule::{Frozen, Render, RenderSettings},
 };
 use tenfold_spectrum::RgbColorSpace;
 
@@ -137,6 +137,10 @@ impl Picture<'_> {
             ("samplesPerPixel", Attribute::I32(self.settings.spp.min(i32::MAX as u32) as i32)),
             ("renderTimeSeconds", Attribute::F32(statistics.seconds as f32)),
         ]);
+        let frozen: Vec<_> = self.settings.frozen().iter().map(Frozen::to_string).collect();
+        if !frozen.is_empty() {
+            attributes.insert("frozen", Attribute::Text(frozen.join(",")));
+        }
         if !self.render.complete {
             attributes.insert("interruptedAfterSamples", Attribute::Text(statistics.samples.to_string()));
         }

@@ -11,8 +11,8 @@ const WITHOUT_EFFECT: [(&str, bool); 4] =
 /// Options of pbrt-v4 that tenfold does not have, and what to do instead.
 const ABSENT: [(&str, &str); 14] = [
     ("debugstart", "--pixel X,Y renders one pixel alone"),
-    ("disable-pixel-jitter", "samples always spread over the pixel's filter"),
-    ("disable-wavelength-jitter", "wavelengths are always sampled"),
+    ("disable-pixel-jitter", "--freeze pixel samples pixels at their centres"),
+    ("disable-wavelength-jitter", "--freeze wavelength renders in the light of one wavelength"),
     ("displacement-edge-scale", "displacement is not supported"),
     ("display-server", "--progress json tells other programs how far a render is"),
     ("force-diffuse", "materials are always those of the scene"),

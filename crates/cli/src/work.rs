@@ -9,7 +9,7 @@ use crate::{
     output::{self, Picture, Target},
     progress::{Reporter, json},
     report,
-    sampling::{self, SamplerChoice},
+    sampling::{self, Freeze, SamplerChoice},
     units::{bytes, plural},
 };
 use serde_json::json;
@@ -18,7 +18,7 @@ use tenfold_math::UVec2;
 use tenfold_render::{
     compile::crop_window,
     film::{PixelBounds, PixelSum},
-    schedule::{self, Render, RenderSettings},
+    schedule::{self, Frozen, Render, RenderSettings},
 };
 
 /// Does what the command line asks for.
@@ -90,6 +90,7 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     if !args.quiet {
         args.sampler.iter().filter_map(SamplerChoice::note).for_each(|note| say(&format!("note: {note}")));
     }
+    args.freeze.iter().flat_map(Freeze::frozen).for_each(|frozen| settings.freeze(frozen));
     settings.threads = NonZeroUsize::new(args.nthreads.into());
     settings.tile_side = args.tile_size;
     settings.tile_order = args.tile_order.into();
@@ -150,6 +151,7 @@ fn started(loaded: &Loaded, settings: &RenderSettings, targets: &[Target]) -> se
         "seed": settings.seed,
         "sampler": settings.sampling.to_string(),
         "strategy": settings.strategies.to_string(),
+        "frozen": settings.frozen().iter().map(Frozen::to_string).collect::<Vec<_>>(),
     })
 }
 

@@ -43,10 +43,23 @@ impl SampledWavelengths {
     }
 
     /// All lanes at one wavelength `lambda` (nm), with density 1 nm⁻¹: what is measured is then the light of one nanometre
-    /// around `lambda`. For freezing the wavelength.
+    /// around `lambda`.
     #[inline]
     pub fn fixed(lambda: f32) -> Self {
         Self { lambda: [lambda; N], pdf: [1.0; N] }
+    }
+
+    /// All lanes at one wavelength `lambda` (nm), with the density of [`Self::sample_visible`], for freezing the wavelength: the
+    /// mean over wavelengths so drawn of what is measured is what is measured of all light. Beyond
+    /// `[LAMBDA_MIN, LAMBDA_MAX]` it is black.
+    #[inline]
+    pub fn held(lambda: f32) -> Self {
+        Self { lambda: [lambda; N], pdf: [Self::visible_pdf(lambda); N] }
+    }
+
+    /// The wavelength in nm on whose two sides [`Self::sample_visible`] draws equally many.
+    pub fn visible_median() -> f32 {
+        Self::sample_visible(0.5).lambda[0]
     }
 
     /// Density, per nm, with which [`Self::sample_visible`] draws a wavelength; 0 outside the rendered range.

@@ -28,6 +28,7 @@ fn wrong_command_lines_say_what_is_wrong() {
         ("scene.pbrt --pixel 23,0", "23 × 17"),
         ("scene.pbrt --pixel -1,0", "23 × 17"),
         ("scene.pbrt --pixelbounds 30,40,0,4", "no pixel"),
+        ("scene.pbrt --freeze lense", "did you mean lens?"),
         ("scene.pbrt --sampler zsobl", "did you mean zsobol?"),
         ("scene.pbrt --strategy light=solid-angel", "did you mean solid-angle?"),
         ("scene.pbrt -o picture", "suffix"),

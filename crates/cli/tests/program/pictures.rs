@@ -70,11 +70,25 @@ fn exr_files_tell_their_story() {
     assert_eq!(text("software"), format!("tenfold {}", env!("CARGO_PKG_VERSION")));
     assert_eq!([text("scene"), text("seed"), text("sampler")], ["scene.pbrt", "42", "zsobol"]);
     assert_eq!(text("strategy"), "light=by-texture,scatter=bsdf,combine=mis");
+    assert!(!image.metadata.attributes.contains_key("frozen"));
     assert_eq!(image.metadata.attributes["samplesPerPixel"], Attribute::I32(2));
     assert!(matches!(image.metadata.attributes["renderTimeSeconds"], Attribute::F32(s) if s > 0.0));
     let [red, .., white] = image.metadata.chromaticities.unwrap();
     assert!((red.x - 0.64).abs() < 1e-5 && (white.y - 0.329).abs() < 1e-3);
     assert_eq!(image.metadata.origin, (0, 0));
+}
+
+#[test]
+fn what_is_frozen_is_told() {
+    let place = Place::new();
+    let image = place.picture("--sampler lens=n-rooks --freeze time=0.25,pixel --freeze dispersion");
+    let text = |name: &str| match &image.metadata.attributes[name] {
+        Attribute::Text(text) => text.clone(),
+        other => panic!("{name}: {other:?}"),
+    };
+    assert_eq!(text("sampler"), "zsobol, pixel held at 0.5, lens=n-rooks, time held at 0.25");
+    assert_eq!(text("frozen"), "pixel=0.5,time=0.25,dispersion=587.56");
+    assert_ne!(image.as_f32(), place.picture("--sampler lens=n-rooks").as_f32());
 }
 
 #[test]

@@ -6,12 +6,13 @@ use super::{
 use crate::{
     bxdf::{Bsdf, BsdfSample, Lobe},
     light::{LightSample, ShadowRay},
+    material::Waves,
     scene::{Scene, Surface},
     texture::TextureContext,
 };
 use tenfold_geometry::{Candidate, Hit, ReferencePoint, SurfaceInteraction};
 use tenfold_math::Ray;
-use tenfold_sampling::{Dimension, PixelSample, hash};
+use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 /// Passing through this many interfaces ends a path: a bound for scenes with interfaces without end.
@@ -46,6 +47,8 @@ pub struct PathTracer<'a> {
     rule: DispersionRule,
     strategies: Strategies,
     footprint_scale: f32,
+    /// Where indices of refraction are looked up, if not at the wavelengths of the path.
+    indices: Option<SampledWavelengths>,
 }
 
 /// What tracing needs room for, to be used again for sample after sample.
@@ -70,7 +73,13 @@ impl<'a> PathTracer<'a> {
     pub fn new(scene: &'a Scene, rule: DispersionRule, strategies: Strategies, spp: u32) -> Self {
         // Many samples average detail by themselves: narrow the footprint of each, as pbrt does.
         let footprint_scale = (1.0 / (spp.max(1) as f32).sqrt()).max(0.125);
-        Self { scene, rule, strategies, footprint_scale }
+        Self { scene, rule, strategies, footprint_scale, indices: None }
+    }
+
+    /// The same with all light refracted as that of one wavelength, in nm, if any is given: nothing disperses.
+    #[must_use]
+    pub fn with_indices_at(self, wavelength: Option<f32>) -> Self {
+        Self { indices: wavelength.map(SampledWavelengths::fixed), ..self }
     }
 
     /// An estimate of the spectral radiance that arrives along `ray`, against its direction, in the lanes of
@@ -169,15 +178,16 @@ impl<'a> PathTracer<'a> {
         };
         let u_mix = || {
             let dimension = Dimension::material_mix(path.bounce);
-            match passes {
-                0 => sample.sampler.get_1d(dimension),
-                // Surfaces behind an interface are at the same vertex, and need numbers of their own.
-                _ => hash::unit_f32(hash::combine(sample.sampler.hash(dimension), passes.into()) as u32),
+            if passes == 0 || sample.sampler.held(dimension.variable).is_some() {
+                return sample.sampler.get_1d(dimension);
             }
+            // Surfaces behind an interface are at the same vertex, and need numbers of their own.
+            hash::unit_f32(hash::combine(sample.sampler.hash(dimension), passes.into()) as u32)
         };
         let material = self.look(surface).material;
-        let bsdf =
-            scene.materials.bsdf(material, &scene.textures, surface, &at, sample.wavelengths, u_mix)?;
+        let indices = self.indices.as_ref().unwrap_or(sample.wavelengths);
+        let waves = Waves { light: sample.wavelengths, indices };
+        let bsdf = scene.materials.bsdf(material, &scene.textures, surface, &at, waves, u_mix)?;
         Some(bsdf.sampled_by(self.strategies.scatter))
     }
 
@@ -322,20 +332,30 @@ impl<'a> PathTracer<'a> {
 /// Decides whether rays that leave a vertex stop at surfaces that are partly there: at each by a number of its own, which is the
 /// same whenever the traversal asks.
 #[derive(Copy, Clone)]
-struct Chance(u64);
+enum Chance {
+    Drawn(u64),
+    Held(f32),
+}
 
 impl Chance {
     #[inline]
     fn new(sampler: &PixelSample<'_>, bounce: u16) -> Self {
-        Self(sampler.hash(Dimension::alpha(bounce)))
+        match sampler.held(Variable::Alpha) {
+            None => Self::Drawn(sampler.hash(Dimension::alpha(bounce))),
+            Some(value) => Self::Held(value.x),
+        }
     }
 
     /// The number, in `[0, 1)`, of a surface that is hit.
     #[inline]
     fn of(self, hit: &Hit) -> f32 {
+        let seed = match self {
+            Self::Drawn(seed) => seed,
+            Self::Held(value) => return value,
+        };
         let id = hit.primitive;
         let place = u64::from(hit.t.to_bits()) << 32 | u64::from(id.index);
-        let bits = hash::combine(hash::combine(self.0, place), id.geometry.index() as u64);
+        let bits = hash::combine(hash::combine(seed, place), id.geometry.index() as u64);
         hash::unit_f32(bits as u32)
     }
 }
@@ -387,7 +407,7 @@ fn survives(path: &mut Path, sample: &Sample<'_>) -> bool {
         return true;
     }
     let carried = path.beta.max_component() * path.eta_scale / path.lanes.mean(path.ratio);
-    if carried >= 1.0 {
+    if carried >= 1.0 || sample.sampler.held(Variable::Roulette).is_some() {
         return true;
     }
     let survival = carried.max(0.05);

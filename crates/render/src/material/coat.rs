@@ -56,7 +56,7 @@ impl Coat {
 
 /// A number of its own for about every sample of a picture.
 fn seed(at: &Point<'_>) -> u64 {
-    let (p, lambda) = (at.context.p, at.wavelengths.lambda[0]);
+    let (p, lambda) = (at.context.p, at.waves.light.lambda[0]);
     [p.x, p.y, p.z, lambda].iter().fold(0, |hash: u64, v| {
         // The increment of splitmix64 keeps zeros from mapping to zeros.
         mix_bits((hash ^ u64::from(v.to_bits())).wrapping_add(0x9e37_79b9_7f4a_7c15))
@@ -86,7 +86,7 @@ pub struct CoatedConductor {
 impl CoatedDiffuse {
     #[inline]
     pub(super) fn bxdf(&self, at: &Point<'_>) -> Bxdf<'_> {
-        let eta = self.coat.eta.sample(at.wavelengths);
+        let eta = self.coat.eta.sample(at.waves.indices);
         let reflectance = at.albedo(&self.reflectance);
         let Some(table) = &self.coat.table else {
             return self.coat.over(at, eta, LayeredBase::Diffuse(bxdf::Diffuse::new(reflectance)));
@@ -110,7 +110,7 @@ impl CoatedDiffuse {
 
 impl CoatedConductor {
     pub(super) fn bxdf(&self, at: &Point<'_>) -> Bxdf<'_> {
-        let interface = self.coat.eta.sample(at.wavelengths);
+        let interface = self.coat.eta.sample(at.waves.indices);
         let ComplexIndex { eta, k } = self.metal.index(at);
         // The metal is seen from inside the coat.
         let (eta, k) = (eta / interface, k / interface);

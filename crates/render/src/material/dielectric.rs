@@ -13,7 +13,7 @@ pub struct Dielectric {
 impl Dielectric {
     #[inline]
     pub(super) fn bxdf(&self, at: &Point<'_>) -> bxdf::Dielectric {
-        bxdf::Dielectric::new(self.eta.sample(at.wavelengths), at.distribution(&self.roughness))
+        bxdf::Dielectric::new(self.eta.sample(at.waves.indices), at.distribution(&self.roughness))
     }
 }
 
@@ -27,6 +27,6 @@ pub struct ThinDielectric {
 impl ThinDielectric {
     #[inline]
     pub(super) fn bxdf(&self, at: &Point<'_>) -> bxdf::ThinDielectric {
-        bxdf::ThinDielectric::new(self.eta.sample(at.wavelengths))
+        bxdf::ThinDielectric::new(self.eta.sample(at.waves.indices))
     }
 }

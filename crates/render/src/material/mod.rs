@@ -61,12 +61,27 @@ pub struct Materials {
     reliefs: Vec<Relief>,
 }
 
+/// The wavelengths at which a material is evaluated.
+#[derive(Copy, Clone, Debug)]
+pub struct Waves<'a> {
+    /// Those of the light.
+    pub light: &'a SampledWavelengths,
+    /// Those whose indices of refraction dielectrics have, which are the same unless dispersion is frozen.
+    pub indices: &'a SampledWavelengths,
+}
+
+impl<'a> From<&'a SampledWavelengths> for Waves<'a> {
+    fn from(light: &'a SampledWavelengths) -> Self {
+        Self { light, indices: light }
+    }
+}
+
 /// Where, and at which wavelengths, a material is evaluated.
 #[derive(Copy, Clone, Debug)]
 struct Point<'a> {
     textures: &'a Textures,
     context: &'a TextureContext,
-    wavelengths: &'a SampledWavelengths,
+    waves: Waves<'a>,
 }
 
 impl Point<'_> {
@@ -77,7 +92,7 @@ impl Point<'_> {
 
     #[inline]
     fn spectrum(&self, slot: &SpectrumSlot) -> SampledSpectrum {
-        self.textures.spectrum(slot, self.context, self.wavelengths)
+        self.textures.spectrum(slot, self.context, self.waves.light)
     }
 
     /// A fraction of light.
@@ -162,17 +177,17 @@ impl Materials {
     /// `at` is the point as textures see it. `u_mix` gives a number in [0, 1) that chooses between mixed materials; it is
     /// asked for at most once, and only where the chance is real.
     #[inline]
-    pub fn bsdf(
+    pub fn bsdf<'w>(
         &self,
         id: Id<Material>,
         textures: &Textures,
         surface: &SurfaceInteraction,
         at: &TextureContext,
-        wavelengths: &SampledWavelengths,
+        waves: impl Into<Waves<'w>>,
         u_mix: impl FnOnce() -> f32,
     ) -> Option<Bsdf<'_>> {
         let id = self.resolve(id, textures, at, u_mix);
-        let bxdf = self.all[id.index()].bxdf(&Point { textures, context: at, wavelengths })?;
+        let bxdf = self.all[id.index()].bxdf(&Point { textures, context: at, waves: waves.into() })?;
         let frame = self.reliefs[id.index()].frame(textures, surface, at);
         Some(Bsdf::new(frame, bxdf))
     }

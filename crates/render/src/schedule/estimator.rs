@@ -1,10 +1,11 @@
 use super::RenderSettings;
 use crate::{
+    filter::FilterSample,
     integrator::{PathTracer, Workspace},
     scene::Scene,
 };
 use tenfold_math::{Vec2, Vec3};
-use tenfold_sampling::{Dimension, PixelSample};
+use tenfold_sampling::{Dimension, PixelSample, Variable};
 use tenfold_spectrum::SampledWavelengths;
 
 /// The estimator of a pixel's integral: one sample of all its variables, from the film to the light.
@@ -12,21 +13,32 @@ use tenfold_spectrum::SampledWavelengths;
 pub struct PixelEstimator<'a> {
     scene: &'a Scene,
     tracer: PathTracer<'a>,
+    /// The wavelengths of all samples, where they are not drawn.
+    wavelengths: Option<SampledWavelengths>,
 }
 
 impl<'a> PixelEstimator<'a> {
     /// An estimator of the pixels of `scene`, under those of `settings` that concern a sample.
     pub fn new(scene: &'a Scene, settings: &RenderSettings) -> Self {
         let tracer = PathTracer::new(scene, settings.dispersion, settings.strategies, settings.spp);
-        Self { scene, tracer }
+        Self {
+            scene,
+            tracer: tracer.with_indices_at(settings.index_wavelength),
+            wavelengths: settings.wavelength.map(SampledWavelengths::held),
+        }
     }
 
     /// The linear RGB of one sample, which may not be finite, with its filter weight in.
     pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace) -> Vec3 {
         let scene = self.scene;
-        let filtered = scene.filter.sample(sampler.get_2d(Dimension::PIXEL));
+        let filtered = match sampler.held(Variable::Pixel) {
+            None => scene.filter.sample(sampler.get_2d(Dimension::PIXEL)),
+            Some(place) => FilterSample { offset: place - Vec2::splat(0.5), weight: 1.0 },
+        };
         let position = sampler.pixel().as_vec2() + Vec2::splat(0.5) + filtered.offset;
-        let wavelengths = SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH));
+        let wavelengths = self
+            .wavelengths
+            .unwrap_or_else(|| SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH)));
         let u_lens = sampler.get_2d(Dimension::LENS);
         let ray = scene.camera.ray(position, u_lens, sampler.get_1d(Dimension::TIME));
         let radiance = self.tracer.radiance(ray, &wavelengths, sampler, workspace);

@@ -5,11 +5,13 @@
 //! cut nor the order nor the number of threads can change the picture.
 
 mod estimator;
+mod frozen;
 mod render;
 mod settings;
 mod statistics;
 
 pub use estimator::PixelEstimator;
+pub use frozen::Frozen;
 pub use render::{Progress, Render, render};
 pub use settings::{RenderSettings, TileOrder};
 pub use statistics::{DroppedSample, Statistics};

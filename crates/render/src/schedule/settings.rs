@@ -39,6 +39,10 @@ pub struct RenderSettings {
     pub dispersion: DispersionRule,
     /// How lights and directions are sampled.
     pub strategies: Strategies,
+    /// The one wavelength, in nm, in whose light the picture is seen; the visible ones are drawn where `None`.
+    pub wavelength: Option<f32>,
+    /// The wavelength, in nm, whose index of refraction all light has; each has its own where `None`.
+    pub index_wavelength: Option<f32>,
 }
 
 impl RenderSettings {
@@ -54,6 +58,8 @@ impl RenderSettings {
             tile_order: TileOrder::default(),
             dispersion: DispersionRule::default(),
             strategies: Strategies::default(),
+            wavelength: None,
+            index_wavelength: None,
         }
     }
 }

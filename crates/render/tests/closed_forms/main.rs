@@ -10,6 +10,7 @@ mod combined;
 mod common;
 mod dispersion;
 mod equivalence;
+mod frozen;
 mod furnaces;
 mod illuminants;
 mod keys;

@@ -189,6 +189,16 @@ impl PixelSample<'_> {
         self.index
     }
 
+    /// The numbers at which `variable` is held, where it is.
+    #[inline]
+    pub fn held(&self, variable: Variable) -> Option<Vec2> {
+        let Pattern::Planned(sampler) = &self.pattern else { return None };
+        match sampler.plan.draw(variable) {
+            Draw::Held(value) => Some(value),
+            Draw::By(_) => None,
+        }
+    }
+
     /// The number of a dimension, in `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
