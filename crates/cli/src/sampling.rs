@@ -99,9 +99,7 @@ fn numbers(text: &str) -> Result<Vec2, String> {
 
 /// The variables of that name.
 fn named(name: &str) -> Result<&'static [Variable], String> {
-    Variable::named(name).ok_or_else(|| {
-        unknown("variable", name, &Variable::names().collect::<Vec<_>>())
-    })
+    Variable::named(name).ok_or_else(|| unknown("variable", name, &Variable::names().collect::<Vec<_>>()))
 }
 
 #[cfg(test)]

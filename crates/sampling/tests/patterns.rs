@@ -111,51 +111,75 @@ fn halton_points_have_one_point_in_each_box() {
     }
 }
 
+/// A number of a sample: those of several variables, alone and in pairs.
+fn number(i: usize, s: &Sampler, index: u32) -> f32 {
+    let p = s.at(PIXEL, index);
+    match i {
+        0 => p.get_1d(Dimension::TIME),
+        1 => p.get_2d(Dimension::LENS).x,
+        2 => p.get_2d(Dimension::LENS).y,
+        3 => p.get_2d(Dimension::light_point(1)).x,
+        4 => p.get_2d(Dimension::light_point(1)).y,
+        _ => p.get_2d(Dimension::light_point(2)).y,
+    }
+}
+
+/// Every pair of them, for every kind and some counts.
+fn pairs_of_numbers() -> impl Iterator<Item = (SamplerKind, u32, usize, usize)> {
+    let counts = |kind| [5u32, 16, 61, 64].map(move |n| (kind, n));
+    let combinations = |(kind, n)| (0..6).flat_map(move |b| (0..b).map(move |a| (kind, n, a, b)));
+    SamplerKind::ALL.into_iter().flat_map(counts).flat_map(combinations)
+}
+
 #[test]
 fn variables_are_not_correlated_within_a_round() {
-    // Over all samples of a round: the covariance of two numbers is zero in the mean, and their cells are filled evenly.
-    let lens = Dimension::LENS;
-    let (one, two) = (Dimension::light_point(1), Dimension::light_point(2));
-    let number = |i: usize, s: &Sampler, index: u32| {
-        let p = s.at(PIXEL, index);
-        match i {
-            0 => p.get_1d(Dimension::TIME),
-            1 => p.get_2d(lens).x,
-            2 => p.get_2d(lens).y,
-            3 => p.get_2d(one).x,
-            4 => p.get_2d(one).y,
-            _ => p.get_2d(two).y,
+    // Over all samples of a round, the covariance of two numbers is zero in the mean. Rounds of different seeds are independent.
+    let tests = pairs_of_numbers().count();
+    for (kind, n, a, b) in pairs_of_numbers() {
+        let covariance = |seed| {
+            let s = Sampler::new(kind, n, seed);
+            let product = |i| (f64::from(number(a, &s, i)) - 0.5) * (f64::from(number(b, &s, i)) - 0.5);
+            (0..n).map(product).sum::<f64>()
+        };
+        let values: Welford = (0..u64::from(20_000 / n)).map(covariance).collect();
+        t_test_mean(&values, 0.0).check(&format!("{kind:?} {n}: {a}, {b}"), 0.01, tests);
+    }
+}
+
+#[test]
+fn pairs_of_variables_fill_the_square_evenly() {
+    // The samples of a round are not free of each other, as χ² demands of what it counts: so of every round one is taken, any.
+    let tests = pairs_of_numbers().count();
+    for (kind, n, a, b) in pairs_of_numbers() {
+        let (rounds, mut rng) = (10_000, Rng::new(3));
+        let mut cells = vec![0u64; 256];
+        for seed in 0..rounds {
+            let (s, i) = (Sampler::new(kind, n, seed), rng.below(n as usize) as u32);
+            cells[(stratum(number(a, &s, i), 16) * 16 + stratum(number(b, &s, i), 16)) as usize] += 1;
         }
-    };
-    let combinations: Vec<(usize, usize)> = (0..6).flat_map(|j| (0..j).map(move |i| (i, j))).collect();
-    let tests = NEW.len() * 4 * combinations.len();
-    for kind in NEW {
-        for n in [5u32, 16, 61, 64] {
-            let rounds = 40_000 / n;
-            for &(a, b) in &combinations {
-                let mut cells = vec![0u64; 256];
-                let mut covariance = Welford::new();
-                for seed in 0..rounds {
-                    let s = Sampler::new(kind, n, u64::from(seed));
-                    let mut sum = 0.0;
-                    for i in 0..n {
-                        let (x, y) = (number(a, &s, i), number(b, &s, i));
-                        cells[(stratum(x, 16) * 16 + stratum(y, 16)) as usize] += 1;
-                        sum += (f64::from(x) - 0.5) * (f64::from(y) - 0.5);
-                    }
-                    covariance.add(sum);
-                }
-                let what = format!("{kind:?} {n}: {a}, {b}");
-                t_test_mean(&covariance, 0.0).check(&what, 0.01, tests);
-                if kind == SamplerKind::MultiJittered && matches!((a, b), (1, 2) | (3, 4)) {
-                    // Within a pair the samples of a round are not free of each other: they share fine strata.
-                    continue;
-                }
-                let each = f64::from(rounds * n) / 256.0;
-                chi2::counts_test(&cells, &[each; 256], &Options { tests, ..Options::default() })
-                    .check(&what);
-            }
+        let each = rounds as f64 / 256.0;
+        chi2::counts_test(&cells, &[each; 256], &Options { tests, ..Options::default() })
+            .check(&format!("{kind:?} {n}: {a}, {b}"));
+    }
+}
+
+#[test]
+fn the_orders_of_two_variables_are_unrelated() {
+    // Of two samples of a round, the one that is ahead in one variable is as often ahead in another as behind: a permutation that
+    // two variables share, in full or in part, would show. One pair of samples of every round, so that the counts are free.
+    let tests = pairs_of_numbers().count();
+    for (kind, n, a, b) in pairs_of_numbers() {
+        let (rounds, mut rng) = (10_000, Rng::new(4));
+        let mut cells = [0u64; 4];
+        for seed in 0..rounds {
+            let s = Sampler::new(kind, n, seed);
+            let (i, step) = (rng.below(n as usize) as u32, 1 + rng.below(n as usize - 1) as u32);
+            let j = (i + step) % n;
+            let ahead = |k| usize::from(number(k, &s, i) < number(k, &s, j));
+            cells[2 * ahead(a) + ahead(b)] += 1;
         }
+        chi2::counts_test(&cells, &[rounds as f64 / 4.0; 4], &Options { tests, ..Options::default() })
+            .check(&format!("{kind:?} {n}: {a}, {b}"));
     }
 }
 
