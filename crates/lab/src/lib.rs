@@ -8,6 +8,7 @@ pub mod convergence;
 pub mod page;
 mod picture;
 pub mod plot;
+pub mod portrait;
 mod table;
 mod work;
 

@@ -10,7 +10,7 @@ pub enum Cell {
     Count(u64),
     /// A number: shown with three significant digits, kept with all.
     Number(f64),
-    /// A number and its standard error, which are two columns of a CSV file.
+    /// A number and its standard error, which are two columns of a CSV file; NaN where it is not known.
     Measured(f64, f64),
     /// Nothing.
     Empty,
@@ -107,6 +107,7 @@ impl Table {
                     Cell::Text(text) => (quoted(text), String::new()),
                     Cell::Count(n) => (n.to_string(), String::new()),
                     Cell::Number(x) => (x.to_string(), String::new()),
+                    Cell::Measured(x, error) if error.is_nan() => (x.to_string(), String::new()),
                     Cell::Measured(x, error) => (x.to_string(), error.to_string()),
                     Cell::Empty => Default::default(),
                 };
@@ -132,6 +133,9 @@ impl Table {
                     Cell::Text(text) => write!(out, "<td>{}</td>", escape(text)),
                     Cell::Count(n) => write!(out, "<td class=\"number\">{n}</td>"),
                     Cell::Number(x) => write!(out, "<td class=\"number\">{}</td>", shown(*x)),
+                    Cell::Measured(x, error) if !error.is_finite() => {
+                        write!(out, "<td class=\"number\">{}</td>", shown(*x))
+                    }
                     Cell::Measured(x, error) => write!(
                         out,
                         "<td class=\"number\">{} <span class=\"error\">± {}</span></td>",

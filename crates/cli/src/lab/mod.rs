@@ -2,6 +2,7 @@
 
 mod convergence;
 mod options;
+mod portrait;
 mod variants;
 
 use crate::{args::STYLES, failure::Failure};
@@ -17,6 +18,8 @@ const EXAMPLES: &str = "\
 Examples:
   tenfold lab convergence room.pbrt
   tenfold lab convergence integral:smooth-2d --samplers independent,jittered,zsobol -o smooth.html
+  tenfold lab convergence room.pbrt --strategies combine=mis,combine=light-only,combine=bsdf-only
+  tenfold lab portrait n-rooks --samples 100
 
 Exit codes are those of tenfold: 0 done; 1 the experiment failed; 2 the scene or the command line is wrong.";
 
@@ -40,6 +43,8 @@ pub(crate) struct LabArgs {
 enum Experiment {
     /// Error against samples and against seconds, with fitted slopes
     Convergence(convergence::Args),
+    /// What the samples of a sampler look like
+    Portrait(portrait::Args),
 }
 
 /// Understands the command line after `tenfold lab`. `None` where help was asked for, and has been shown.
@@ -61,6 +66,7 @@ pub(crate) fn parse(argv: &[OsString]) -> Result<Option<LabArgs>, Failure> {
 pub(crate) fn run(args: &LabArgs) -> Result<(), Failure> {
     match &args.experiment {
         Experiment::Convergence(args) => convergence::run(args),
+        Experiment::Portrait(args) => portrait::run(args),
     }
 }
 
@@ -81,6 +87,10 @@ mod tests {
             "convergence --samplers zsobl",
             "convergence --strategies light=dark",
             "convergence --strategies light=uniform-area+combine",
+            "portrait",
+            "portrait zsobl",
+            "portrait zsobol --samples 0",
+            "portrait zsobol --seeds 1",
             "convergence --spp 0",
             "convergence --spp 1,2,x",
             "convergence --seeds 1",

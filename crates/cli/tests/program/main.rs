@@ -3,6 +3,7 @@
 mod broken;
 mod command_line;
 mod determinism;
+mod lab;
 mod pictures;
 mod protocol;
 

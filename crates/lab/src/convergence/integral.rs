@@ -13,13 +13,16 @@ pub struct Integral {
 }
 
 impl Integral {
+    /// The smooth one over one pair.
+    pub const SMOOTH_2D: Self = Self {
+        name: "smooth-2d",
+        about: "The product of e^u, over the two numbers of one pair (the point on a light), divided by its integral (e − 1)².",
+        at: |s| pair(s, Dimension::light_point(0)),
+    };
+
     /// All of them.
     pub const ALL: [Self; 4] = [
-        Self {
-            name: "smooth-2d",
-            about: "The product of e^u, over the two numbers of one pair (the point on a light), divided by its integral (e − 1)².",
-            at: |s| pair(s, Dimension::light_point(0)),
-        },
+        Self::SMOOTH_2D,
         Self {
             name: "smooth-4d",
             about: "The product of e^u over the four numbers of two pairs (the point on the lens and that on a light), divided by \
