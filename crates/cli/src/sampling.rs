@@ -31,7 +31,7 @@ pub(crate) fn sampler(text: &str) -> Result<SamplerChoice, String> {
 }
 
 /// The sampler of that name.
-pub(crate) fn kind(name: &str) -> Result<Mapped, String> {
+fn kind(name: &str) -> Result<Mapped, String> {
     SamplerKind::from_pbrt(name)
         .ok_or_else(|| unknown("sampler", name, &SamplerKind::all_names().collect::<Vec<_>>()))
 }

@@ -33,7 +33,8 @@ pub(super) struct Args {
     #[arg(value_name = "SCENE")]
     subjects: Vec<String>,
 
-    /// Samplers to compare [default: all; with --strategies the default one]
+    /// Samplers to compare, those of one render with + between: zsobol,zsobol+lens=n-rooks [default: all; with
+    /// --strategies the default one]
     #[arg(long, value_name = "NAME,...", value_parser = variants::plan, value_delimiter = ',')]
     samplers: Vec<NamedPlan>,
 

@@ -85,6 +85,7 @@ mod tests {
             "",
             "convergense",
             "convergence --samplers zsobl",
+            "convergence --samplers zsobol+lens=zsobl",
             "convergence --strategies light=dark",
             "convergence --strategies light=uniform-area+combine",
             "portrait",

@@ -3,7 +3,7 @@
 use crate::{sampling, strategy};
 use tenfold_lab::convergence::Variant;
 use tenfold_render::{integrator::Strategies, schedule::RenderSettings};
-use tenfold_sampling::SamplePlan;
+use tenfold_sampling::{SamplePlan, SamplerKind};
 
 /// A way to draw the samples and what it is called.
 #[derive(Clone, Debug)]
@@ -21,7 +21,10 @@ pub(super) struct NamedStrategies {
 
 /// Understands one of `--samplers`.
 pub(super) fn plan(text: &str) -> Result<NamedPlan, String> {
-    Ok(NamedPlan { name: text.to_owned(), plan: sampling::kind(text)?.kind.into() })
+    let choices = text.split('+').map(sampling::sampler).collect::<Result<Vec<_>, _>>()?;
+    let mut plan = SamplePlan::from(SamplerKind::default());
+    sampling::apply(&choices, &mut plan);
+    Ok(NamedPlan { name: text.to_owned(), plan })
 }
 
 /// Understands one of `--strategies`.

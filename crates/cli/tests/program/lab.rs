@@ -6,7 +6,7 @@ use crate::Place;
 fn experiments_write_pages_and_numbers() {
     let place = Place::new();
     let run = place.succeed(
-        "lab convergence scene.pbrt integral:disk-2d --spp 1,2 --seeds 2 --max-pixels 30 --samplers n-rooks,zsobol -o c.html",
+        "lab convergence scene.pbrt integral:disk-2d --spp 1,2 --seeds 2 --max-pixels 30 --samplers n-rooks,zsobol+lens=jittered -o c.html",
     );
     assert!(run.out.is_empty() && run.err.contains("c.html, c.csv, c-slopes.csv"), "{}", run.err);
     place.succeed("lab convergence scene.pbrt --spp 1 --seeds 2 --max-pixels 30 --strategies combine=mis,scatter=cosine -q");
