@@ -1,7 +1,7 @@
 use tenfold_math::{Frame, Vec2, Vec3};
 use tenfold_spectrum::SampledSpectrum;
 
-use super::record::{BsdfSample, Lobe, Scattering};
+use super::record::{BsdfSample, Lobe};
 use super::{Bxdf, Hemispheres, ScatterStrategy};
 
 /// A [`Bxdf`] at a point of a surface: the same methods on directions in the world.
@@ -19,11 +19,10 @@ impl<'a> Bsdf<'a> {
         Self { frame, bxdf, strategy: ScatterStrategy::Bsdf }
     }
 
-    /// The same, with directions sampled by `strategy`.
+    /// Has directions sampled by `strategy`; by the scattering function unless set.
     #[inline]
-    #[must_use]
-    pub fn sampled_by(self, strategy: ScatterStrategy) -> Self {
-        Self { strategy, ..self }
+    pub fn set_strategy(&mut self, strategy: ScatterStrategy) {
+        self.strategy = strategy;
     }
 
     /// The shading frame.
@@ -69,7 +68,7 @@ impl<'a> Bsdf<'a> {
         let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         match Hemispheres::new(self.strategy, &self.bxdf, wo) {
             None => self.bxdf.pdf(wo, wi),
-            Some(hemispheres) => hemispheres.scattering(&self.bxdf, wo, wi).pdf,
+            Some(hemispheres) => hemispheres.eval_and_pdf(&self.bxdf, wo, wi).pdf,
         }
     }
 
@@ -79,10 +78,7 @@ impl<'a> Bsdf<'a> {
         let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         match Hemispheres::new(self.strategy, &self.bxdf, wo) {
             None => self.bxdf.eval_and_pdf(wo, wi),
-            Some(hemispheres) => {
-                let Scattering { f, pdf } = hemispheres.scattering(&self.bxdf, wo, wi);
-                BsdfValue { f, pdf }
-            }
+            Some(hemispheres) => hemispheres.eval_and_pdf(&self.bxdf, wo, wi),
         }
     }
 
@@ -90,12 +86,16 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2, hero: usize) -> Option<BsdfSample> {
         let wo = self.frame.to_local(wo);
-        let mut sample = match Hemispheres::new(self.strategy, &self.bxdf, wo) {
-            None => self.bxdf.sample(wo, u_lobe, u, hero),
-            Some(hemispheres) => hemispheres.sample(&self.bxdf, wo, u_lobe, u, hero),
-        }?;
-        sample.wi = self.frame.to_world(sample.wi);
-        Some(sample)
+        if let Some(hemispheres) = Hemispheres::new(self.strategy, &self.bxdf, wo) {
+            // Apart, as the way of the default must not pay for it.
+            return hemispheres.sample(&self.bxdf, wo, u_lobe, u, hero).map(|sample| self.in_world(sample));
+        }
+        self.bxdf.sample(wo, u_lobe, u, hero).map(|sample| self.in_world(sample))
+    }
+
+    #[inline]
+    fn in_world(&self, sample: BsdfSample) -> BsdfSample {
+        BsdfSample { wi: self.frame.to_world(sample.wi), ..sample }
     }
 }
 

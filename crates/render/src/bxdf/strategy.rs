@@ -5,8 +5,8 @@ use tenfold_sampling::warp;
 use tenfold_spectrum::SampledSpectrum;
 
 use super::local::same_hemisphere;
-use super::record::{BsdfSample, Lobe, Scattering};
-use super::{Bxdf, HORIZON};
+use super::record::{BsdfSample, Lobe};
+use super::{BsdfValue, Bxdf, HORIZON};
 
 /// How the direction of scattering is chosen.
 ///
@@ -52,11 +52,15 @@ impl Hemispheres {
     /// What takes the place of the density of `bxdf` from `wo`; `None` where that density is to be kept, or is none.
     #[inline]
     pub(crate) fn new(strategy: ScatterStrategy, bxdf: &Bxdf<'_>, wo: Vec3) -> Option<Self> {
-        let by_cosine = match strategy {
-            ScatterStrategy::Bsdf => return None,
-            ScatterStrategy::Uniform => false,
-            ScatterStrategy::Cosine => true,
-        };
+        match strategy {
+            ScatterStrategy::Bsdf => None,
+            ScatterStrategy::Uniform => Self::over(bxdf, wo, false),
+            ScatterStrategy::Cosine => Self::over(bxdf, wo, true),
+        }
+    }
+
+    #[cold]
+    fn over(bxdf: &Bxdf<'_>, wo: Vec3, by_cosine: bool) -> Option<Self> {
         let lobes = bxdf.lobes();
         if !lobes.has_density() || wo.z.abs() < HORIZON {
             return None;
@@ -78,11 +82,11 @@ impl Hemispheres {
 
     /// As [`Bxdf::eval_and_pdf`].
     #[cold]
-    pub(crate) fn scattering(&self, bxdf: &Bxdf<'_>, wo: Vec3, wi: Vec3) -> Scattering<SampledSpectrum> {
+    pub(crate) fn eval_and_pdf(&self, bxdf: &Bxdf<'_>, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wi.z.abs() < HORIZON {
-            return Scattering::ZERO;
+            return BsdfValue { f: SampledSpectrum::ZERO, pdf: SampledSpectrum::ZERO };
         }
-        Scattering { f: bxdf.eval(wo, wi), pdf: SampledSpectrum::splat(self.pdf(wo, wi)) }
+        BsdfValue { f: bxdf.eval(wo, wi), pdf: SampledSpectrum::splat(self.pdf(wo, wi)) }
     }
 
     /// As [`Bxdf::sample`], whose deltas it leaves as they are.
@@ -107,7 +111,7 @@ impl Hemispheres {
             warp::sample_uniform_hemisphere(u)
         };
         wi.z = wi.z.copysign(if reflected { wo.z } else { -wo.z });
-        let Scattering { f, pdf } = self.scattering(bxdf, wo, wi);
+        let BsdfValue { f, pdf } = self.eval_and_pdf(bxdf, wo, wi);
         let (side, eta) = if reflected {
             (Lobe::REFLECTION, 1.0)
         } else {

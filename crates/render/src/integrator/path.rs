@@ -63,11 +63,14 @@ impl Path {
     ) -> SampledSpectrum {
         let density = match &self.arrival {
             Arrival::Specular => self.ratio,
-            Arrival::Scattered { from, light_ratio } => match combine {
-                CombineStrategy::Mis => self.ratio + *light_ratio * light_pdf(from),
-                CombineStrategy::LightOnly if light_pdf(from) > 0.0 => return SampledSpectrum::ZERO,
-                CombineStrategy::LightOnly | CombineStrategy::BsdfOnly => self.ratio,
-            },
+            Arrival::Scattered { from, light_ratio } => {
+                let light_pdf = light_pdf(from);
+                match combine {
+                    CombineStrategy::Mis => self.ratio + *light_ratio * light_pdf,
+                    CombineStrategy::LightOnly if light_pdf > 0.0 => return SampledSpectrum::ZERO,
+                    CombineStrategy::LightOnly | CombineStrategy::BsdfOnly => self.ratio,
+                }
+            }
         };
         self.beta * emitted / self.lanes.mean(density)
     }

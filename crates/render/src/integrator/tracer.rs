@@ -187,8 +187,11 @@ impl<'a> PathTracer<'a> {
         let material = self.look(surface).material;
         let indices = self.indices.as_ref().unwrap_or(sample.wavelengths);
         let waves = Waves { light: sample.wavelengths, indices };
-        let bsdf = scene.materials.bsdf(material, &scene.textures, surface, &at, waves, u_mix)?;
-        Some(bsdf.sampled_by(self.strategies.scatter))
+        let mut bsdf = scene.materials.bsdf(material, &scene.textures, surface, &at, waves, u_mix);
+        if let Some(bsdf) = &mut bsdf {
+            bsdf.set_strategy(self.strategies.scatter);
+        }
+        bsdf
     }
 
     /// What a surface that was hit looks like.
@@ -244,12 +247,12 @@ impl<'a> PathTracer<'a> {
         let lights = &self.scene.lights;
         let Some(light) = lights.sample(strategy, from, u_choice, u, sample.wavelengths) else { return };
         let scattering = bsdf.eval_and_pdf(surface.wo, light.wi);
-        let Some(density) = path.density_of_sampled(combine, &light, scattering.pdf) else { return };
         let cos = light.wi.dot(bsdf.frame().z).abs();
         let contribution = path.beta * scattering.f * light.radiance * cos;
         if contribution.is_black() {
             return;
         }
+        let Some(density) = path.density_of_sampled(combine, &light, scattering.pdf) else { return };
         sample.workspace.rays.shadow += 1;
         if self.is_shadowed(from, &light, Chance::new(sample.sampler, path.bounce)) {
             return;

@@ -47,6 +47,12 @@ impl Files {
     }
 }
 
+impl<const N: usize> From<[(&str, Vec<u8>); N]> for Files {
+    fn from(files: [(&str, Vec<u8>); N]) -> Self {
+        Self(files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect())
+    }
+}
+
 impl Resources for Files {
     fn load(&self, path: &str) -> io::Result<Vec<u8>> {
         self.0.get(path).cloned().ok_or_else(|| io::ErrorKind::NotFound.into())

@@ -20,3 +20,4 @@ mod passing;
 mod penumbra;
 mod pictures;
 mod prism;
+mod strategies;

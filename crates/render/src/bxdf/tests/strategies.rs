@@ -35,7 +35,9 @@ fn named<'a>(cases: &'a [Case<'a>]) -> impl Iterator<Item = &'a Case<'a>> {
 }
 
 fn bsdf<'a>(case: &Case<'a>, strategy: ScatterStrategy) -> Bsdf<'a> {
-    Bsdf::new(Frame::from_z(Vec3::Z), case.bxdf).sampled_by(strategy)
+    let mut bsdf = Bsdf::new(Frame::from_z(Vec3::Z), case.bxdf);
+    bsdf.set_strategy(strategy);
+    bsdf
 }
 
 #[test]
