@@ -66,7 +66,7 @@ pub(crate) fn completed(render: &Render, settings: &RenderSettings, written: &[T
 }
 
 /// Prints the table of `--stats`.
-pub(crate) fn print_stats(loaded: &Loaded, render: &Render) {
+pub(crate) fn print_stats(loaded: &Loaded, settings: &RenderSettings, render: &Render) {
     let (statistics, counts) = (&render.statistics, &loaded.counts);
     let world = loaded.scene.world.stats();
     let per_sample = |n: u64| {
@@ -77,6 +77,7 @@ pub(crate) fn print_stats(loaded: &Loaded, render: &Render) {
         ("reading the scene", duration(loaded.read_seconds)),
         ("compiling it, with its files and hierarchies", duration(loaded.compile_seconds)),
         ("rendering", duration(statistics.seconds)),
+        ("sampler", settings.sampling.to_string()),
         ("samples", count(statistics.samples as f64)),
         ("samples left out, not finite", statistics.dropped.to_string()),
         ("path rays", per_sample(statistics.rays.path)),

@@ -179,6 +179,6 @@ fn tell(args: &Args, loaded: &Loaded, settings: &RenderSettings, render: &Render
         say(&report::closing_line(render, settings, written));
     }
     if args.stats {
-        report::print_stats(loaded, render);
+        report::print_stats(loaded, settings, render);
     }
 }

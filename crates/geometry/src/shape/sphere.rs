@@ -276,8 +276,9 @@ impl Sphere {
             return self.sample_area(u)?.by_solid_angle(reference);
         };
         let to_centre = centre - reference.p;
-        // q = 1 − cos θ of the direction, uniform in the cone; sin²θ = q·(2 − q).
-        let q = u.x * one_minus_cos;
+        // q = 1 − cos θ of the direction, uniform in the cone; sin²θ = q·(2 − q). The very middle of the square, which chance does
+        // not hit, is sent to that of the cone, for who freezes points there.
+        let q = if u == Vec2::splat(0.5) { 0.0 } else { u.x * one_minus_cos };
         let sin2_theta = q * (2.0 - q);
         // The angle at the centre between the nearest point and the sampled one
         // (pbrt book, 4th edition, eq. 6.14).

@@ -105,10 +105,14 @@ impl TrowbridgeReitz {
     }
 
     /// Samples a normal with [`TrowbridgeReitz::visible_pdf`], on the side of `wo`: in the space where the surface
-    /// is a hemisphere, reflected directions are uniform on a spherical cap (Dupuy and Benyoub 2023, listing 3).
+    /// is a hemisphere, reflected directions are uniform on a spherical cap (Dupuy and Benyoub 2023, listing 3). The very
+    /// middle of the square, which chance does not hit, is sent to that of the lobe, for who freezes directions there.
     #[inline]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let sign = 1f32.copysign(wo.z);
+        if u == Vec2::splat(0.5) {
+            return Vec3::new(0.0, 0.0, sign);
+        }
         let w = Vec3::new(self.alpha_x * wo.x, self.alpha_y * wo.y, wo.z) * sign;
         let w = w / w.length();
         // 1 - cos θ of the cap's point, so that nothing cancels near the pole and h.z cannot be negative.

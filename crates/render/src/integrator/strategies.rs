@@ -1,6 +1,7 @@
 use super::CombineStrategy;
 use crate::{bxdf::ScatterStrategy, light::LightStrategy};
 use std::fmt;
+use tenfold_sampling::{Draw, SamplePlan, Variable};
 
 /// How the variables of the integral that depend on the scene are sampled: uniformly with weights, or by a density
 /// that follows what is integrated. The picture is the same for all but for its noise, of which the default has the least.
@@ -12,6 +13,24 @@ pub struct Strategies {
     pub scatter: ScatterStrategy,
     /// How the two are combined.
     pub combine: CombineStrategy,
+}
+
+impl Strategies {
+    /// What they come to where `plan` holds points on lights or directions of scattering. A held point is not one that a scattered
+    /// direction meets, nor does a held direction meet lights as often as it should: so where both would count, light is
+    /// found by sampling it alone. With held points lights are points; light from infinitely far has no point to
+    /// be held, and scattered directions alone find it. With held directions glossy surfaces are mirrors.
+    #[must_use]
+    pub fn held(self, plan: &SamplePlan) -> Self {
+        let held = |variable| matches!(plan.draw(variable), Draw::Held(_));
+        let (point, direction) = (held(Variable::LightPoint), held(Variable::ScatterDirection));
+        let single = (point || direction) && self.combine == CombineStrategy::Mis;
+        Self {
+            light: if point { LightStrategy::AsPoint } else { self.light },
+            combine: if single { CombineStrategy::LightOnly } else { self.combine },
+            ..self
+        }
+    }
 }
 
 /// As the command line takes it: `light=by-texture,scatter=bsdf,combine=mis`.

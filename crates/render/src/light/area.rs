@@ -124,6 +124,12 @@ impl DiffuseAreaLight {
             }
             (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => primitive.sample_from(from, u)?,
             (LightStrategy::UniformArea, _) => primitive.sample_area_from(from, u)?,
+            (LightStrategy::AsPoint, AreaRadiance::Image(image)) => image.point_from(&primitive, from, u)?,
+            // A ball shines to all sides by what is seen of it; where the other shapes are seen from must not matter.
+            (LightStrategy::AsPoint, _) if matches!(primitive, Primitive::Sphere(_)) => {
+                primitive.sample_from(from, u)?
+            }
+            (LightStrategy::AsPoint, _) => primitive.sample_area_from(from, u)?,
         };
         let to_light = s.p - from.p;
         let distance_squared = to_light.length_squared();
@@ -141,7 +147,7 @@ impl DiffuseAreaLight {
         })
     }
 
-    /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`.
+    /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`; where it finds but one, any positive number.
     #[inline]
     pub(super) fn pdf(&self, strategy: LightStrategy, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         let primitive = self.primitive();
@@ -150,7 +156,9 @@ impl DiffuseAreaLight {
             (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => {
                 primitive.pdf_from_point(from, point)
             }
-            (LightStrategy::UniformArea, _) => primitive.pdf_area_from_point(from, point),
+            (LightStrategy::UniformArea | LightStrategy::AsPoint, _) => {
+                primitive.pdf_area_from_point(from, point)
+            }
         }
     }
 }

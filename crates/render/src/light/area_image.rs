@@ -130,6 +130,19 @@ impl AreaImage {
         Some(sample)
     }
 
+    /// The point that `u` stands for in the distribution of brightness alone, wherever it is seen from.
+    pub(super) fn point_from(
+        &self,
+        primitive: &Primitive<'_>,
+        from: &ReferencePoint,
+        u: Vec2,
+    ) -> Option<ShapeSample> {
+        let Some(b) = &self.brightness else { return primitive.sample_area_from(from, u) };
+        let mut sample = primitive.sample_area(b.distribution.sample(u).point)?;
+        sample.pdf = b.pdf_from(1.0, primitive, from, &sample.surface_point());
+        Some(sample)
+    }
+
     #[inline]
     pub(super) fn pdf_from(
         &self,

@@ -53,6 +53,7 @@ impl ImageInfinite {
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
         let (wi, color, pdf) = match strategy {
+            LightStrategy::AsPoint => return None,
             LightStrategy::ByTexture => {
                 let s = self.distribution.sample(u);
                 let wi = self.world_from_light * equal_area_square_to_sphere(s.point);
@@ -77,6 +78,7 @@ impl ImageInfinite {
     #[inline]
     pub(super) fn pdf(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
         let on_square = match strategy {
+            LightStrategy::AsPoint => 0.0,
             LightStrategy::ByTexture => self.distribution.pdf(self.square(direction)),
             LightStrategy::UniformArea | LightStrategy::SolidAngle => 1.0,
         };

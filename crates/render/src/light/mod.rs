@@ -176,7 +176,7 @@ impl Light {
             Self::Projection(l) => l.sample(from, w),
             Self::Goniometric(l) => l.sample(from, w),
             Self::Area(l) => l.sample(strategy, from, u, w),
-            Self::Uniform(l) => Some(l.sample(u, w)),
+            Self::Uniform(l) => (strategy != LightStrategy::AsPoint).then(|| l.sample(u, w)),
             Self::Image(l) => l.sample(strategy, u, w),
         }
     }
@@ -200,6 +200,7 @@ impl Light {
     #[inline]
     fn pdf_escaped(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
         match self {
+            Self::Uniform(_) if strategy == LightStrategy::AsPoint => 0.0,
             Self::Uniform(l) => l.pdf(),
             Self::Image(l) => l.pdf(strategy, direction),
             Self::Point(_)

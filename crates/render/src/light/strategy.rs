@@ -1,6 +1,6 @@
 /// How the point on a light is chosen, once the light is.
 ///
-/// All of them find all light; what differs is the noise. They concern lights that have more than one point: areas and
+/// All of [`LightStrategy::ALL`] find all light; what differs is the noise. They concern lights that have more than one point: areas and
 /// infinite lights.
 ///
 /// | | on a surface | infinitely far away |
@@ -17,10 +17,13 @@ pub enum LightStrategy {
     /// In proportion to its picture, and to solid angle near it.
     #[default]
     ByTexture,
+    /// Every area as a single point that the numbers give, at which all its light is gathered; light from infinitely
+    /// far is not sampled. For numbers that are frozen: not one of those that find all light.
+    AsPoint,
 }
 
 impl LightStrategy {
-    /// All of them, plain before refined.
+    /// All that find all light, plain before refined.
     pub const ALL: [Self; 3] = [Self::UniformArea, Self::SolidAngle, Self::ByTexture];
 
     /// The name, in kebab case.
@@ -29,6 +32,7 @@ impl LightStrategy {
             Self::UniformArea => "uniform-area",
             Self::SolidAngle => "solid-angle",
             Self::ByTexture => "by-texture",
+            Self::AsPoint => "as-point",
         }
     }
 }

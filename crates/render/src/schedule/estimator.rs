@@ -20,7 +20,8 @@ pub struct PixelEstimator<'a> {
 impl<'a> PixelEstimator<'a> {
     /// An estimator of the pixels of `scene`, under those of `settings` that concern a sample.
     pub fn new(scene: &'a Scene, settings: &RenderSettings) -> Self {
-        let tracer = PathTracer::new(scene, settings.dispersion, settings.strategies, settings.spp);
+        let strategies = settings.strategies.held(&settings.sampling);
+        let tracer = PathTracer::new(scene, settings.dispersion, strategies, settings.spp);
         Self {
             scene,
             tracer: tracer.with_indices_at(settings.index_wavelength),

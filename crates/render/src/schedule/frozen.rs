@@ -9,8 +9,8 @@ use tenfold_sampling::{Draw, Variable};
 ///
 /// - `Pixel`: the value is the place in the pixel's square, whatever the filter, and its weight is one.
 /// - `Lens`: ½, ½ is the middle of the lens: everything is sharp. `Time`: ½ is when half of the shutter's light has come in.
-/// - `LightPoint`: every light shines from one point. `ScatterDirection`: every lobe scatters in one direction. Both only where
-///   light is sampled: see [`Strategies::held`](crate::integrator::Strategies::held).
+/// - `LightPoint`: every light shines from one point. `ScatterDirection`: every lobe scatters in one direction, for ½, ½ in its
+///   middle. Where light is sampled, it is found in no other way: see [`Strategies::held`](crate::integrator::Strategies::held).
 /// - `Alpha`: surfaces are there where their alpha is above the value, and else not.
 /// - `Roulette`: paths go on however little they carry, whatever the value.
 /// - Other choices (`LightChoice`, `ScatterLobe`, `MaterialMix`, ...): one alternative stands for all, and the others are missing.

@@ -1,14 +1,14 @@
 //! Variables held at a value: what is left of a picture without their effects.
 
 use super::common::{SIGNIFICANCE, channels, film, scene};
-use tenfold_math::{Vec2, Vec3};
+use tenfold_math::{UVec2, Vec2, Vec3};
 use tenfold_render::integrator::Workspace;
 use tenfold_render::scene::Scene;
 use tenfold_render::schedule::{Frozen, PixelEstimator, RenderSettings};
 use tenfold_sampling::{Sampler, SamplerKind, Variable};
 use tenfold_spectrum::{SampledWavelengths, named};
-use tenfold_testkit::Rng;
 use tenfold_testkit::image::{Pair, check_tiles};
+use tenfold_testkit::{Rng, Welford};
 
 const WIDTH: u32 = 24;
 const HEIGHT: u32 = 16;
@@ -174,4 +174,96 @@ fn without_chance_alpha_is_a_threshold() {
     let set = |s: &mut RenderSettings| s.spp = 4;
     let at = |value| means(&scene, &[Frozen::Variable(Variable::Alpha, Vec2::splat(value))], set);
     assert!(at(0.39).iter().all(|p| *p == Vec3::ZERO) && at(0.41).iter().all(|p| p.y > 0.5));
+}
+
+/// The moments of a pixel's green in the light of one wavelength where `frozen` is held, over independent samples.
+fn samples(scene: &Scene, pixel: UVec2, frozen: &[Frozen], spp: u32) -> Welford {
+    let mut settings = RenderSettings { spp, ..RenderSettings::of(scene) };
+    settings.sampling = SamplerKind::Independent.into();
+    frozen.iter().for_each(|f| settings.freeze(*f));
+    let (sampler, mut workspace) = (Sampler::new(settings.sampling, spp, 7), Workspace::default());
+    let estimator = PixelEstimator::new(scene, &settings);
+    (0..spp).map(|i| f64::from(estimator.sample(&sampler.at(pixel, i), &mut workspace).y)).collect()
+}
+
+/// A floor seen from above under `light`, at height 2 over its middle, with a small shade half way up beside it; one bounce.
+fn lit_floor(light: &str) -> Scene {
+    scene(&format!(
+        r#"Film "rgb" "integer xresolution" {WIDTH} "integer yresolution" {HEIGHT} PixelFilter "box"
+        Integrator "path" "integer maxdepth" 1 LookAt 0 8 0  0 0 0  0 0 1
+        Camera "perspective" "float fov" 22 WorldBegin
+        AttributeBegin AreaLightSource "diffuse" "rgb L" [ 5 5 5 ] Translate 0 2 0 {light} AttributeEnd
+        Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+        Shape "bilinearmesh" "point3 P" [ -9 0 9  9 0 9  -9 0 -9  9 0 -9 ]
+        Translate 0.5 1 0 Rotate 90 1 0 0 Shape "disk" "float radius" 0.3"#
+    ))
+}
+
+/// With the point on the light held, a light is a point: its shadows have no half-shade, and it lights what lies
+/// free as much as it should.
+#[test]
+fn without_the_lights_extent_shadows_are_hard() {
+    let still = [Frozen::Wavelength(550.0), Frozen::Variable(Variable::Pixel, MIDDLE)];
+    let held = [still[0], still[1], Frozen::Variable(Variable::LightPoint, MIDDLE)];
+    let lights = [
+        (r#"Shape "sphere" "float radius" 0.5"#, 0.5),
+        (r#"Rotate 90 1 0 0 Shape "disk" "float radius" 0.5"#, 0.5),
+        (r#"Shape "bilinearmesh" "point3 P" [ -0.4 0 -0.4  0.4 0 -0.4  -0.4 0 0.4  0.4 0 0.4 ]"#, 0.45),
+    ];
+    for (light, size) in lights {
+        let scene = lit_floor(light);
+        let (mut shades, mut dark, mut bright) = (0, 0, 0);
+        for pixel in scene.film.bounds.pixels() {
+            let point = samples(&scene, pixel, &held, 8);
+            // Nothing else is drawn: one bounce, one light.
+            assert!(point.variance() <= 1e-12 * point.mean * point.mean, "{light} {pixel}");
+            let whole = samples(&scene, pixel, &still, 256);
+            shades += usize::from(whole.variance() > 0.25 * whole.mean * whole.mean);
+            dark += usize::from(point.mean == 0.0);
+            // Where all of the light is seen, a point of its power is nearly as good: its solid angle is small. The shadow of a point
+            // in the middle has radius 0.6 about (±1, 0), as one looks at it.
+            let from_middle =
+                (pixel.as_vec2() + Vec2::splat(0.5) - Vec2::new(12.0, 8.0)) * (2.0 * 8.0 * 0.194 / 16.0);
+            if Vec2::new(from_middle.x.abs() - 1.0, from_middle.y).length() > 0.6 + size + 0.2 {
+                bright += 1;
+                let ratio = point.mean / whole.mean;
+                assert!((ratio - 1.0).abs() < 0.08, "{light} {pixel}: {ratio}");
+            }
+        }
+        assert!(shades > 10 && dark > 5 && bright > 10, "{light}: {shades} {dark} {bright}");
+    }
+}
+
+/// With directions held in the middle of their lobes, rough metal is a mirror.
+#[test]
+fn without_the_lobes_extent_metal_is_a_mirror() {
+    let metal = |roughness: f64| {
+        let world = format!(
+            r#"LightSource "infinite" "rgb L" [ 0.2 0.3 0.4 ]
+            AttributeBegin Material "diffuse" Shape "bilinearmesh" "point3 P" [ -5 0 5  5 0 5  -5 0 -5  5 0 -5 ] AttributeEnd
+            Material "conductor" "float roughness" {roughness} "bool remaproughness" false
+            Translate 0 1 0 Shape "sphere" "float radius" 0.9"#
+        );
+        picture("box", 0.0, &world)
+    };
+    let still = [Frozen::Wavelength(550.0), Frozen::Variable(Variable::Pixel, MIDDLE)];
+    let held = [still[0], still[1], Frozen::Variable(Variable::ScatterDirection, MIDDLE)];
+    let (mirror, rough) = (metal(0.0), metal(0.25));
+    let set = |s: &mut RenderSettings| s.spp = 64;
+    // The mirror's sky is seen at once, the floor lit by a sky that is drawn; the latter is the same in both.
+    let (mirrored, sharp, glossy) =
+        (means(&mirror, &held, set), means(&rough, &held, set), means(&rough, &still, set));
+    let ball = |p: &UVec2| (p.as_vec2() + Vec2::splat(0.5) - Vec2::new(12.0, 8.0)).length() < 3.0;
+    let inside: Vec<_> =
+        rough.film.bounds.pixels().enumerate().filter(|(_, p)| ball(p)).map(|(i, _)| i).collect();
+    let far =
+        |a: &[Vec3]| inside.iter().map(|&i| (a[i] - mirrored[i]).abs().max_element()).fold(0.0, f32::max);
+    let brightest = inside.iter().map(|&i| mirrored[i].max_element()).fold(0.0, f32::max);
+    // Masking takes a little off.
+    assert!(
+        far(&sharp) < 0.1 * brightest && far(&glossy) > 0.2 * brightest,
+        "{} {}",
+        far(&sharp),
+        far(&glossy)
+    );
 }
