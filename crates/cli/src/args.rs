@@ -3,6 +3,8 @@
 use crate::{
     failure::Failure,
     lab::{self, LabArgs},
+    layers::Layer,
+    noise::NoiseArgs,
     pbrt_options,
     progress::Style,
     sampling::{self, Freeze, SamplerChoice},
@@ -30,6 +32,7 @@ Examples:
   tenfold room.pbrt                 a scene, to the file that it names
   tenfold room.pbrt -o room.exr -o room.png --spp 256
   tenfold room.pbrt --cropwindow 0.5,1,0,0.5 -o corner.png
+  tenfold room.pbrt --noise 0.01       until the noise is 1 %, with the samples where the error is
   tenfold room.pbrt --pixel 320,240    one pixel, its value on standard output
   tenfold room.pbrt --progress json    for programs: one JSON object a line
   tenfold lab --help                experiments on the renderer
@@ -67,6 +70,10 @@ pub(crate) struct Args {
     /// Write PNG files with 16 bits a channel; else 8, dithered
     #[arg(long, help_heading = "Picture")]
     pub(crate) png16: bool,
+
+    /// Have EXR files hold these of every pixel too: the number of samples, the standard error
+    #[arg(long, value_name = "samples,error", value_enum, value_delimiter = ',', help_heading = "Picture")]
+    pub(crate) layers: Vec<Layer>,
 
     /// Render a part only, in fractions of width and height
     #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = list::<f32, 4>, allow_hyphen_values = true,
@@ -116,6 +123,9 @@ pub(crate) struct Args {
     /// What the other wavelengths do at dispersive glass: go ways of their own, or end there as in pbrt
     #[arg(long, value_name = "RULE", value_enum, default_value = "split", help_heading = "Sampling")]
     pub(crate) dispersion: Dispersion,
+
+    #[command(flatten)]
+    pub(crate) noise: NoiseArgs,
 
     /// Number of threads; 0 takes all cores
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true,
@@ -313,6 +323,11 @@ mod tests {
             "--no-such-option",
             "a.pbrt b.pbrt",
             "--log =",
+            "--noise 0",
+            "--noise 0.01 --spp 4",
+            "--time-limit 3d",
+            "--time-limit 3 --quick",
+            "--layers depth",
         ] {
             let failure = parsed(line).unwrap_err();
             assert_eq!(failure.code(), 2, "{line}");

@@ -1,6 +1,6 @@
 //! Pictures and their files.
 
-use crate::{args::Args, default_scene, failure::Failure};
+use crate::{args::Args, default_scene, failure::Failure, layers::Layer};
 use std::{
     collections::BTreeMap,
     io,
@@ -31,6 +31,11 @@ impl Target {
             Ok(format) => Err(wrong(format!("{format} files are only read; write .exr, .png, .pfm or .hdr"))),
             Err(unknown) => Err(wrong(unknown.to_string())),
         }
+    }
+
+    /// Whether it can hold layers.
+    pub(crate) fn is_exr(&self) -> bool {
+        self.format == Format::Exr
     }
 
     /// Whether a file can be put there, found out before hours are spent on its content.
@@ -100,6 +105,8 @@ pub(crate) struct Picture<'a> {
     pub(crate) settings: &'a RenderSettings,
     /// What came out.
     pub(crate) render: &'a Render,
+    /// What EXR files hold besides.
+    pub(crate) layers: &'a [Layer],
 }
 
 impl Picture<'_> {
@@ -113,8 +120,13 @@ impl Picture<'_> {
             let to_srgb = space.to(RgbColorSpace::srgb());
             pixels.iter_mut().for_each(|rgb| *rgb = to_srgb * *rgb);
         }
-        let values: Vec<f32> = pixels.iter().flat_map(|rgb| rgb.to_array()).collect();
-        let mut image = Image::from_f32(bounds.size().x, bounds.size().y, ["R", "G", "B"], values)?;
+        let mut parts = vec![(&["R", "G", "B"][..], pixels.iter().flat_map(|rgb| rgb.to_array()).collect())];
+        if format == Format::Exr {
+            parts.extend(self.layers.iter().map(|layer| (layer.channels(), layer.values(self.render))));
+        }
+        let channels = parts.iter().flat_map(|(names, _)| names.iter().copied());
+        let mut image =
+            Image::from_f32(bounds.size().x, bounds.size().y, channels, interleaved(&parts, pixels.len()))?;
         let [red, green, blue] = space.primaries();
         let resolution = self.scene.film.resolution;
         image.metadata = Metadata {
@@ -134,7 +146,7 @@ impl Picture<'_> {
             ("seed", Attribute::Text(self.settings.seed.to_string())),
             ("sampler", Attribute::Text(self.settings.sampling.to_string())),
             ("strategy", Attribute::Text(self.settings.strategies.to_string())),
-            ("samplesPerPixel", Attribute::I32(self.settings.spp.min(i32::MAX as u32) as i32)),
+            ("samplesPerPixel", Attribute::I32(self.samples_per_pixel().min(i32::MAX as u32) as i32)),
             ("renderTimeSeconds", Attribute::F32(statistics.seconds as f32)),
         ]);
         let frozen: Vec<_> = self.settings.frozen().iter().map(Frozen::to_string).collect();
@@ -144,8 +156,28 @@ impl Picture<'_> {
         if !self.render.complete {
             attributes.insert("interruptedAfterSamples", Attribute::Text(statistics.samples.to_string()));
         }
+        if let Some(report) = &self.render.noise {
+            let texts = [("noise", report.reached.map(|n| n.value)), ("noiseTarget", report.target)];
+            attributes.extend(texts.into_iter().filter_map(|(k, v)| Some((k, Attribute::F32(v? as f32)))));
+        }
         attributes.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
+
+    /// Those of every pixel, or in the mean where pixels differ.
+    fn samples_per_pixel(&self) -> u32 {
+        let film = &self.render.film;
+        match self.render.noise {
+            None => self.settings.spp,
+            Some(_) => (film.samples() as f64 / film.bounds().area().max(1) as f64).round() as u32,
+        }
+    }
+}
+
+/// The values of several sets of channels of `pixels` pixels, pixel by pixel.
+fn interleaved(parts: &[(&[&str], Vec<f32>)], pixels: usize) -> Vec<f32> {
+    let of_pixel =
+        |p: usize| parts.iter().flat_map(move |(names, values)| &values[p * names.len()..][..names.len()]);
+    (0..pixels).flat_map(of_pixel).copied().collect()
 }
 
 /// A text as attributes can hold it.

@@ -4,10 +4,10 @@ use crate::{
     diagnostics::say,
     load::Loaded,
     output::Target,
-    units::{bytes, count, duration, plural},
+    units::{bytes, count, digits, duration, plural},
 };
 use serde_json::{Value, json};
-use tenfold_render::schedule::{Render, RenderSettings, Statistics};
+use tenfold_render::schedule::{Noise, NoiseReport, Render, RenderSettings, Statistics, Stop};
 
 /// The closing line.
 pub(crate) fn closing_line(render: &Render, settings: &RenderSettings, written: &[Target]) -> String {
@@ -16,17 +16,81 @@ pub(crate) fn closing_line(render: &Render, settings: &RenderSettings, written: 
     let size = render.film.bounds().size();
     let files: Vec<_> = written.iter().map(|target| target.path.display().to_string()).collect();
     let files = if files.is_empty() { String::new() } else { format!("{}: ", files.join(", ")) };
+    let with = match &render.noise {
+        None => plural(settings.spp as usize, "sample"),
+        Some(report) => noise(report, render),
+    };
     format!(
-        "{files}{} × {} pixels with {} in {}; {} samples ({}/s), {} rays ({}/s)",
+        "{files}{} × {} pixels with {with} in {}; {} samples ({}/s), {} rays ({}/s)",
         size.x,
         size.y,
-        plural(settings.spp as usize, "sample"),
         duration(statistics.seconds),
         count(statistics.samples as f64),
         per_second(statistics.samples),
         count(statistics.rays.total() as f64),
         per_second(statistics.rays.total()),
     )
+}
+
+/// The noise of a picture, why there are no more samples, and how many there are.
+fn noise(report: &NoiseReport, render: &Render) -> String {
+    let reached = match report.reached {
+        None => "unknown noise".to_owned(),
+        Some(Noise { value, interval: None }) => format!("noise {}", digits(value)),
+        Some(Noise { value, interval: Some([low, high]) }) => {
+            format!("noise {} (95 %: {} to {})", digits(value), digits(low), digits(high))
+        }
+    };
+    let target = report.target.map_or(String::new(), |target| format!(", target {target}"));
+    let samples = SamplesPerPixel::of(render);
+    format!(
+        "{reached}{target}, {}, {} samples a pixel ({} to {}), {} with the search for the error,",
+        why(report),
+        samples.mean.round(),
+        samples.least,
+        samples.most,
+        samples.in_all.round(),
+    )
+}
+
+/// Why a render took no more samples.
+fn why(report: &NoiseReport) -> &'static str {
+    match report.stop {
+        Stop::Target
+            if report.reached.is_none_or(|n| report.target.is_none_or(|target| n.value <= target)) =>
+        {
+            "reached"
+        }
+        Stop::Target => "missed with the samples that it was found to need",
+        Stop::MostSamples => "ended by the most samples a pixel",
+        Stop::TimeLimit => "ended by the time limit",
+        Stop::Interrupted => "interrupted",
+    }
+}
+
+/// How many samples there are of a pixel.
+struct SamplesPerPixel {
+    /// In the picture, in the mean.
+    mean: f64,
+    /// In the picture, of the pixel with the fewest.
+    least: u32,
+    /// In the picture, of the pixel with the most.
+    most: u32,
+    /// In the mean, with those that are not in the picture.
+    in_all: f64,
+}
+
+impl SamplesPerPixel {
+    fn of(render: &Render) -> Self {
+        let counts = || render.film.sums().iter().map(|sum| sum.samples());
+        let pixels = render.film.sums().len().max(1) as f64;
+        Self {
+            mean: render.film.samples() as f64 / pixels,
+            least: counts().min().unwrap_or(0),
+            most: counts().max().unwrap_or(0),
+            in_all: render.statistics.samples as f64 / pixels,
+        }
+    }
 }
 
 /// What to say of samples that were left out, if any were.
@@ -50,7 +114,7 @@ pub(crate) fn completed(render: &Render, settings: &RenderSettings, written: &[T
         "outputs": written.iter().map(|t| t.path.display().to_string()).collect::<Vec<_>>(),
         "width": bounds.size().x,
         "height": bounds.size().y,
-        "samples_per_pixel": settings.spp,
+        "samples_per_pixel": render.noise.is_none().then_some(settings.spp),
         "seconds": statistics.seconds,
         "samples": statistics.samples,
         "samples_per_second": statistics.samples as f64 / statistics.seconds.max(1e-6),
@@ -59,6 +123,21 @@ pub(crate) fn completed(render: &Render, settings: &RenderSettings, written: &[T
         "dropped_samples": statistics.dropped,
         "first_dropped": first.map(|d| json!({ "x": d.pixel.x, "y": d.pixel.y, "index": d.index })),
     });
+    if let Some(report) = &render.noise {
+        let samples = SamplesPerPixel::of(render);
+        fields["samples_per_pixel"] = json!({ "mean": samples.mean, "least": samples.least, "most": samples.most, "in_all": samples.in_all });
+        fields["noise"] = json!({
+            "target": report.target,
+            "reached": report.reached.map(|n| n.value),
+            "interval_95": report.reached.and_then(|n| n.interval),
+            "stop": match report.stop {
+                Stop::Target => "target",
+                Stop::MostSamples => "max-spp",
+                Stop::TimeLimit => "time-limit",
+                Stop::Interrupted => "interrupted",
+            },
+        });
+    }
     if bounds.area() == 1 {
         fields["value"] = json!(render.film.means()[0].to_array());
     }

@@ -11,6 +11,12 @@ pub(crate) fn count(n: f64) -> String {
     format!("{n:.digits$}{prefix}")
 }
 
+/// A small number with three digits: `0.0123`, `1.23`.
+pub(crate) fn digits(x: f64) -> String {
+    let leading = if x > 0.0 { (-tenfold_math::ops::log10(x)).ceil().clamp(0.0, 12.0) } else { 0.0 };
+    format!("{x:.0$}", leading as usize + 2)
+}
+
 /// Bytes: `12.3 MB`.
 pub(crate) fn bytes(n: u64) -> String {
     let text = count(n as f64);
@@ -49,6 +55,12 @@ mod tests {
         let shown = [0.0, 7.0, 999.0, 999.6, 1234.0, 99_960.0, 1.5e6, 2.34e10].map(count);
         assert_eq!(shown, ["0", "7", "999", "1.00 k", "1.23 k", "100 k", "1.50 M", "23.4 G"]);
         assert_eq!([bytes(12), bytes(12_300_000)], ["12 B", "12.3 MB"]);
+    }
+
+    #[test]
+    fn small_numbers_have_three_digits() {
+        let shown = [0.0, 1.234, 0.5678, 0.012_345, 0.000_98].map(digits);
+        assert_eq!(shown, ["0.00", "1.23", "0.568", "0.0123", "0.000980"]);
     }
 
     #[test]

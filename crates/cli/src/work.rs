@@ -4,7 +4,7 @@ use crate::{
     args::Args,
     diagnostics::say,
     failure::Failure,
-    interrupt, load,
+    interrupt, layers, load,
     load::Loaded,
     output::{self, Picture, Target},
     progress::{Reporter, json},
@@ -34,7 +34,8 @@ pub(crate) fn render(args: &Args) -> Result<(), Failure> {
         targets.iter().try_for_each(Target::check_writable)?;
     }
     let settings = settings(args, &loaded)?;
-    check_memory(settings.bounds)?;
+    let layers = layers::checked(&args.layers, settings.noise.is_some(), targets.iter().any(Target::is_exr))?;
+    check_memory(&settings)?;
 
     if matches!(reporter, Reporter::Json(_)) {
         json::started(started(&loaded, &settings, &targets));
@@ -49,8 +50,13 @@ pub(crate) fn render(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Failed("interrupted, nothing was written".to_owned()));
     }
 
-    let picture =
-        Picture { scene: &loaded.scene, scene_name: &loaded.name, settings: &settings, render: &render };
+    let picture = Picture {
+        scene: &loaded.scene,
+        scene_name: &loaded.name,
+        settings: &settings,
+        render: &render,
+        layers: &layers,
+    };
     write_all(&targets, &picture, args.png16)?;
     tell(args, &loaded, &settings, &render, &targets);
     if !render.complete {
@@ -64,10 +70,13 @@ pub(crate) fn render(args: &Args) -> Result<(), Failure> {
 
 /// What to say of a render that the user ended, and of what there is of it.
 fn interrupted(render: &Render, settings: &RenderSettings, written: &[Target]) -> String {
-    let total = settings.bounds.area() as f64 * settings.spp as f64;
-    let share = 100.0 * render.statistics.samples as f64 / total;
     let files: Vec<_> = written.iter().map(|t| t.path.display().to_string()).collect();
     let files = if files.is_empty() { "the picture".to_owned() } else { files.join(", ") };
+    if render.noise.is_some() {
+        return format!("interrupted: {files} with the noise it had");
+    }
+    let total = settings.bounds.area() as f64 * settings.spp as f64;
+    let share = 100.0 * render.statistics.samples as f64 / total;
     format!("interrupted: {files} with {share:.1} % of the samples")
 }
 
@@ -85,6 +94,7 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     let resolution = loaded.scene.film.resolution;
     let spp = args.spp.or(args.quick.then_some(1));
     settings.spp = spp.unwrap_or(settings.spp);
+    settings.noise = args.noise.settings()?;
     settings.seed = args.seed.unwrap_or(settings.seed);
     sampling::apply(&args.sampler, &mut settings.sampling);
     if !args.quiet {
@@ -122,9 +132,10 @@ fn asked_bounds(args: &Args, resolution: UVec2) -> Option<PixelBounds> {
 }
 
 /// Refuses pictures that memory cannot hold; a program that runs out of it ends without a word.
-fn check_memory(bounds: PixelBounds) -> Result<(), Failure> {
-    // The sums, their means and the copies that are written.
-    let per_pixel = size_of::<PixelSum>() + 64;
+fn check_memory(settings: &RenderSettings) -> Result<(), Failure> {
+    let bounds = settings.bounds;
+    // The sums, their means and the copies that are written; and what the noise is told from.
+    let per_pixel = size_of::<PixelSum>() + 64 + if settings.noise.is_some() { 512 } else { 0 };
     let needed = bounds.area().saturating_mul(per_pixel);
     if Vec::<u8>::new().try_reserve_exact(needed).is_err() {
         let size = bounds.size();
@@ -140,14 +151,17 @@ fn check_memory(bounds: PixelBounds) -> Result<(), Failure> {
 
 fn started(loaded: &Loaded, settings: &RenderSettings, targets: &[Target]) -> serde_json::Value {
     let (resolution, bounds) = (loaded.scene.film.resolution, settings.bounds);
+    let known = settings.noise.is_none();
     json!({
         "program": concat!("tenfold ", env!("CARGO_PKG_VERSION")),
         "scene": loaded.name,
         "outputs": targets.iter().map(|t| t.path.display().to_string()).collect::<Vec<_>>(),
         "resolution": [resolution.x, resolution.y],
         "bounds": [bounds.min.x, bounds.max.x, bounds.min.y, bounds.max.y],
-        "samples_per_pixel": settings.spp,
-        "samples": bounds.area() as u64 * settings.spp as u64,
+        "samples_per_pixel": known.then_some(settings.spp),
+        "samples": known.then_some(bounds.area() as u64 * settings.spp as u64),
+        "noise_target": settings.noise.and_then(|n| n.target),
+        "time_limit": settings.noise.and_then(|n| n.time_limit),
         "seed": settings.seed,
         "sampler": settings.sampling.to_string(),
         "strategy": settings.strategies.to_string(),

@@ -47,7 +47,12 @@ impl<'a> Work<'a> {
     }
 
     fn progress(&self, done: u64) -> Progress {
-        Progress { done, total: self.total.max(done), seconds: self.start.elapsed().as_secs_f64() }
+        Progress {
+            done,
+            total: self.total.max(done),
+            seconds: self.start.elapsed().as_secs_f64(),
+            ..Progress::default()
+        }
     }
 }
 

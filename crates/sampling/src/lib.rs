@@ -4,6 +4,7 @@
 //! gives a [`PixelSample`] for a pixel and an index, and that answers for dimensions by name, in any order.
 //! [`warp`] and [`distribution`] turn such numbers into points, directions and choices with known densities.
 
+mod allocation;
 mod dimension;
 pub mod distribution;
 mod group;
@@ -11,6 +12,7 @@ pub mod hash;
 mod sampler;
 pub mod warp;
 
+pub use allocation::neyman_shares;
 pub use dimension::{Dimension, Variable};
 pub use distribution::{AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, sample_discrete};
 pub use hash::{hash, mix_bits};

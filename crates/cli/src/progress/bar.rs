@@ -1,10 +1,9 @@
-use super::{Throttle, percent, rate, remaining};
-use crate::units::{count, duration};
+use super::{Throttle, line};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 use tenfold_render::schedule::Progress;
 
-/// A bar on standard error: the share done, samples a second, the time left.
+/// A bar on standard error, with a line of numbers.
 pub(crate) struct Bar {
     bar: ProgressBar,
     throttle: Throttle,
@@ -26,8 +25,7 @@ impl Bar {
         }
         self.bar.set_length(progress.total);
         self.bar.set_position(progress.done);
-        let (rate, left) = (count(rate(progress)), duration(remaining(progress)));
-        self.bar.set_message(format!("{:3.0} %  {rate} samples/s  {left} left", percent(progress).floor()));
+        self.bar.set_message(line(progress));
     }
 
     pub(super) fn finish(&self) {

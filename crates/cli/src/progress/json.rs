@@ -42,6 +42,8 @@ impl Json {
                     "seconds": progress.seconds,
                     "samples_per_second": rate(progress),
                     "seconds_left": remaining(progress),
+                    "noise": progress.noise,
+                    "noise_target": progress.target,
                 }),
                 false,
             );

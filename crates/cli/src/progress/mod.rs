@@ -4,6 +4,7 @@ mod bar;
 pub(crate) mod json;
 mod plain;
 
+use crate::units::{count, digits, duration};
 use bar::Bar;
 use clap::ValueEnum;
 use json::Json;
@@ -88,6 +89,19 @@ fn percent(progress: Progress) -> f64 {
     100.0 * progress.done as f64 / progress.total.max(1) as f64
 }
 
+/// A line for people: the share done, samples a second, the time left, the noise now and wanted.
+fn line(progress: Progress) -> String {
+    let (rate, left) = (count(rate(progress)), duration(remaining(progress)));
+    let mut line = format!("{:3.0} %  {rate} samples/s  {left} left", percent(progress).floor());
+    if let Some(noise) = progress.noise {
+        line += &format!("  noise {}", digits(noise));
+    }
+    if let (Some(_), Some(target)) = (progress.noise, progress.target) {
+        line += &format!(", target {target}");
+    }
+    line
+}
+
 /// Lets one call pass in a while.
 struct Throttle {
     every: Duration,
@@ -117,10 +131,18 @@ mod tests {
 
     #[test]
     fn rates_and_times_follow_from_the_samples() {
-        let progress = Progress { done: 300, total: 1200, seconds: 3.0 };
+        let progress = Progress { done: 300, total: 1200, seconds: 3.0, ..Progress::default() };
         assert_eq!((rate(progress), remaining(progress), percent(progress)), (100.0, 9.0, 25.0));
-        let none = Progress { done: 0, total: 0, seconds: 0.0 };
+        let none = Progress::default();
         assert!(rate(none) == 0.0 && remaining(none) == 0.0 && percent(none) == 0.0);
+    }
+
+    #[test]
+    fn a_line_says_share_rate_time_and_noise() {
+        let progress = Progress { done: 2_000_000, total: 8_000_000, seconds: 4.0, ..Progress::default() };
+        assert_eq!(line(progress), " 25 %  500 k samples/s  12.0 s left");
+        let noisy = Progress { noise: Some(0.012_34), target: Some(0.01), ..progress };
+        assert_eq!(line(noisy), " 25 %  500 k samples/s  12.0 s left  noise 0.0123, target 0.01");
     }
 
     #[test]

@@ -1,8 +1,5 @@
-use super::{Throttle, percent, rate, remaining};
-use crate::{
-    diagnostics::say,
-    units::{count, duration},
-};
+use super::{Throttle, line};
+use crate::diagnostics::say;
 use std::time::Duration;
 use tenfold_render::schedule::Progress;
 
@@ -20,21 +17,5 @@ impl Plain {
         if progress.done < progress.total && self.throttle.passes() {
             say(&line(progress));
         }
-    }
-}
-
-fn line(progress: Progress) -> String {
-    let (rate, left) = (count(rate(progress)), duration(remaining(progress)));
-    format!("{:3.0} %  {rate} samples/s  {left} left", percent(progress).floor())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_line_says_share_rate_and_time() {
-        let progress = Progress { done: 2_000_000, total: 8_000_000, seconds: 4.0 };
-        assert_eq!(line(progress), " 25 %  500 k samples/s  12.0 s left");
     }
 }

@@ -4,6 +4,7 @@ mod broken;
 mod command_line;
 mod determinism;
 mod lab;
+mod noise;
 mod pictures;
 mod protocol;
 

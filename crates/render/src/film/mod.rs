@@ -53,8 +53,13 @@ impl PixelSum {
 
     /// The mean of the samples; black where there are none.
     pub fn mean(&self) -> Vec3 {
+        Vec3::from_array(self.exact_mean().map(|v| v as f32))
+    }
+
+    /// The mean of the samples in double precision; black where there are none.
+    pub fn exact_mean(&self) -> [f64; 3] {
         let n = self.samples.max(1) as f64;
-        Vec3::from_array(self.rgb.map(|sum| (sum.to_f64() / n) as f32))
+        self.rgb.map(|sum| sum.to_f64() / n)
     }
 }
 
@@ -94,6 +99,11 @@ impl Film {
             let index = self.bounds.index(p);
             self.pixels[index].merge(other.pixel(p));
         }
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn sums(&self) -> &[PixelSum] {
+        &self.pixels
     }
 
     /// The mean of every pixel, row by row from the top: linear RGB.

@@ -20,8 +20,10 @@ pub struct PixelEstimator<'a> {
 impl<'a> PixelEstimator<'a> {
     /// An estimator of the pixels of `scene`, under those of `settings` that concern a sample.
     pub fn new(scene: &'a Scene, settings: &RenderSettings) -> Self {
+        // Textures are narrowed by the number of samples: it must not change on the way of a picture.
+        let spp = if settings.noise.is_some() { u32::MAX } else { settings.spp };
         let strategies = settings.strategies.held(&settings.sampling);
-        let tracer = PathTracer::new(scene, settings.dispersion, strategies, settings.spp);
+        let tracer = PathTracer::new(scene, settings.dispersion, strategies, spp);
         Self {
             scene,
             tracer: tracer.with_indices_at(settings.index_wavelength),

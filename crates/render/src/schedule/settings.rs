@@ -1,3 +1,4 @@
+use super::NoiseSettings;
 use crate::{
     film::PixelBounds,
     integrator::{DispersionRule, Strategies},
@@ -23,8 +24,10 @@ pub enum TileOrder {
 pub struct RenderSettings {
     /// How the numbers of each variable are drawn.
     pub sampling: SamplePlan,
-    /// Samples a pixel.
+    /// Samples a pixel, where `noise` does not say otherwise.
     pub spp: u32,
+    /// Has the noise measured, and decide over the samples.
+    pub noise: Option<NoiseSettings>,
     /// Distinguishes renders of the same scene.
     pub seed: u64,
     /// The pixels to render.
@@ -51,6 +54,7 @@ impl RenderSettings {
         Self {
             sampling: scene.sampler.kind.into(),
             spp: scene.sampler.spp,
+            noise: None,
             seed: scene.sampler.seed,
             bounds: scene.film.bounds,
             threads: None,

@@ -16,6 +16,7 @@ mod illuminants;
 mod keys;
 mod lens;
 mod motion;
+mod noise;
 mod passing;
 mod penumbra;
 mod pictures;
