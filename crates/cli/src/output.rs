@@ -145,7 +145,7 @@ impl Picture<'_> {
             ("scene", Attribute::Text(latin1(self.scene_name))),
             ("seed", Attribute::Text(self.settings.seed.to_string())),
             ("sampler", Attribute::Text(self.settings.sampling.to_string())),
-            ("strategy", Attribute::Text(self.settings.strategies.to_string())),
+            ("strategy", Attribute::Text(self.settings.strategy())),
             ("samplesPerPixel", Attribute::I32(self.samples_per_pixel().min(i32::MAX as u32) as i32)),
             ("renderTimeSeconds", Attribute::F32(statistics.seconds as f32)),
         ]);

@@ -105,7 +105,7 @@ fn settings(args: &Args, loaded: &Loaded) -> Result<RenderSettings, Failure> {
     settings.tile_side = args.tile_size;
     settings.tile_order = args.tile_order.into();
     settings.dispersion = args.dispersion.into();
-    args.strategy.iter().for_each(|strategy| strategy.apply(&mut settings.strategies));
+    args.strategy.iter().try_for_each(|strategy| strategy.apply(&mut settings, &loaded.scene))?;
     if let Some(bounds) = asked_bounds(args, resolution) {
         if bounds.is_empty() {
             return Err(Failure::Wrong(format!(
@@ -164,7 +164,7 @@ fn started(loaded: &Loaded, settings: &RenderSettings, targets: &[Target]) -> se
         "time_limit": settings.noise.and_then(|n| n.time_limit),
         "seed": settings.seed,
         "sampler": settings.sampling.to_string(),
-        "strategy": settings.strategies.to_string(),
+        "strategy": settings.strategy(),
         "frozen": settings.frozen().iter().map(Frozen::to_string).collect::<Vec<_>>(),
     })
 }

@@ -15,6 +15,7 @@ pub mod filter;
 pub mod integrator;
 pub mod light;
 pub mod material;
+pub mod movers;
 pub mod scene;
 pub mod schedule;
 pub mod texture;

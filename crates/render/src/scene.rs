@@ -6,6 +6,7 @@ use crate::{
     filter::Filter,
     light::{Light, Lights},
     material::{Material, Materials},
+    movers::Movers,
     texture::{FloatSlot, Textures},
 };
 use tenfold_geometry::{PrimitiveId, World};
@@ -26,6 +27,8 @@ pub struct Scene {
     pub world: World,
     /// What the primitives look like.
     pub surfaces: Vec<Surface>,
+    /// The objects that the scene names, and how they move.
+    pub movers: Movers,
     /// All materials.
     pub materials: Materials,
     /// All textures.

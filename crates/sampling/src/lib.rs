@@ -14,6 +14,8 @@ pub mod warp;
 
 pub use allocation::neyman_shares;
 pub use dimension::{Dimension, Variable};
-pub use distribution::{AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, sample_discrete};
+pub use distribution::{
+    AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, PiecewiseLinear1D, sample_discrete,
+};
 pub use hash::{hash, mix_bits};
 pub use sampler::{Draw, Mapped, PixelSample, SamplePlan, Sampler, SamplerKind};

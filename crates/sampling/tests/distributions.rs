@@ -1,7 +1,9 @@
 //! Tabulated distributions against their densities (χ²), their inverses, and broken tables.
 
 use tenfold_math::{ONE_MINUS_EPSILON, Vec2, vec2};
-use tenfold_sampling::{AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, sample_discrete};
+use tenfold_sampling::{
+    AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, PiecewiseLinear1D, sample_discrete,
+};
 use tenfold_testkit::{Options, Rng, chi2};
 
 fn options() -> Options {
@@ -39,6 +41,36 @@ fn one_dimension() {
             assert_eq!((d.pdf(min - 0.1), d.pdf(max + 0.1), d.invert(max + 0.1)), (0.0, 0.0, None));
             assert_eq!(d.pdf(f32::NAN), 0.0);
         }
+    }
+}
+
+#[test]
+fn lines_from_point_to_point() {
+    let o = Options { theta_bins: 15, phi_bins: 8, seed: 6, ..options() };
+    for points in [
+        vec![[0.0, 1.0], [1.0, 1.0]],
+        vec![[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]],
+        vec![[0.0, 0.0], [0.2, 3.0], [0.2, 1.0], [0.7, 2.0], [0.9, 0.0], [1.0, 0.0]],
+        vec![[0.0, 0.0], [0.3, 0.0], [0.3, 5.0], [0.31, 0.0], [0.6, 0.0], [1.0, 2.0]],
+        vec![[-2.0, 0.0], [-2.0, 1e30], [6.0, 3e30]],
+    ] {
+        let d = PiecewiseLinear1D::new(&points).unwrap();
+        let (min, max) = (points[0][0], points[points.len() - 1][0]);
+        chi2::interval_test(min, max, |u| Some(d.sample(u)), |x| f64::from(d.pdf(x)), &o)
+            .check(&format!("{points:?}"));
+        let [from, to] = d.support();
+        let mut rng = Rng::new(1);
+        let mut u: Vec<_> = (0..500).map(|_| rng.f32()).chain([0.0, 0.5, ONE_MINUS_EPSILON]).collect();
+        u.sort_by(f32::total_cmp);
+        for pair in u.windows(2) {
+            let x = d.sample(pair[0]);
+            assert!(x <= d.sample(pair[1]) && (from..=to).contains(&x), "{points:?} {pair:?}");
+            assert!((d.invert(x).unwrap() - pair[0]).abs() < 1e-4, "{points:?} {x}");
+        }
+        assert_eq!((d.pdf(min - 0.1), d.pdf(max + 0.1), d.invert(max + 0.1)), (0.0, 0.0, None));
+    }
+    for nothing in [vec![], vec![[0.0, 1.0]], vec![[0.0, 0.0], [1.0, 0.0]], vec![[1.0, 1.0], [0.0, 1.0]]] {
+        assert_eq!(PiecewiseLinear1D::new(&nothing), None);
     }
 }
 

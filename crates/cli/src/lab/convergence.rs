@@ -78,21 +78,26 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let options = Options { counts, seeds: args.seeds, seed: args.common.seed, reference: args.reference };
 
     let plans = plans(args);
-    let variants = |usual: &RenderSettings| variants::all(&plans, &args.strategies, usual);
+    let variants = |subject: &Subject| match subject {
+        Subject::Integral(_) => Ok(Vec::new()),
+        Subject::Scene(scene) => variants::all(&plans, &args.strategies, &scene.1, &scene.0.scene),
+    };
+    let variants = subjects.iter().map(variants).collect::<Result<Vec<_>, _>>()?;
+    let subjects: Vec<_> = subjects.iter().zip(&variants).collect();
     let plain: Vec<_> = plans.iter().map(|p| (p.name.clone(), p.plan)).collect();
-    let samples = subjects.iter().map(|subject| match subject {
+    let samples = subjects.iter().map(|(subject, variants)| match subject {
         Subject::Integral(_) => work_of_integral(plans.len(), &options),
-        Subject::Scene(scene) => work_of_scene(scene.1.bounds, variants(&scene.1).len(), &options),
+        Subject::Scene(scene) => work_of_scene(scene.1.bounds, variants.len(), &options),
     });
     let results = session.work(samples.sum(), |work| {
-        let experiment = |subject: &Subject| match subject {
+        let experiment = |(subject, variants): &(&Subject, &Vec<_>)| match subject {
             Subject::Integral(integral) => of_integral(integral, &plain, &options, work),
             Subject::Scene(scene) => {
                 let (loaded, settings) = &**scene;
                 let name = Path::new(&loaded.name)
                     .file_name()
                     .map_or(loaded.name.as_str().into(), |n| n.to_string_lossy());
-                of_scene(&name, &loaded.scene, settings, &variants(settings), &options, work)
+                of_scene(&name, &loaded.scene, settings, variants, &options, work)
             }
         };
         subjects.iter().map(experiment).collect::<Result<Vec<_>, _>>()

@@ -1,8 +1,12 @@
 //! Ways to render, as the command line names them to be compared: the parts of one with `+` between.
 
-use crate::{sampling, strategy};
+use crate::{
+    failure::Failure,
+    sampling,
+    strategy::{self, Strategy},
+};
 use tenfold_lab::convergence::Variant;
-use tenfold_render::{integrator::Strategies, schedule::RenderSettings};
+use tenfold_render::{scene::Scene, schedule::RenderSettings};
 use tenfold_sampling::{SamplePlan, SamplerKind};
 
 /// A way to draw the samples and what it is called.
@@ -16,7 +20,7 @@ pub(super) struct NamedPlan {
 #[derive(Clone, Debug)]
 pub(super) struct NamedStrategies {
     name: String,
-    strategies: Strategies,
+    strategies: Vec<Strategy>,
 }
 
 /// Understands one of `--samplers`.
@@ -29,30 +33,29 @@ pub(super) fn plan(text: &str) -> Result<NamedPlan, String> {
 
 /// Understands one of `--strategies`.
 pub(super) fn strategies(text: &str) -> Result<NamedStrategies, String> {
-    let mut strategies = Strategies::default();
-    for part in text.split('+') {
-        strategy::parse(part)?.apply(&mut strategies);
-    }
+    let strategies = text.split('+').map(strategy::parse).collect::<Result<_, _>>()?;
     Ok(NamedStrategies { name: text.to_owned(), strategies })
 }
 
-/// Every plan with every choice of strategies, where there are any.
+/// Every plan with every choice of strategies, where there are any, for `scene`.
 pub(super) fn all(
     plans: &[NamedPlan],
     strategies: &[NamedStrategies],
     usual: &RenderSettings,
-) -> Vec<Variant> {
+    scene: &Scene,
+) -> Result<Vec<Variant>, Failure> {
     let drawn = |p: &NamedPlan| {
         let settings = RenderSettings { sampling: p.plan, ..usual.clone() };
         Variant { name: p.name.clone(), settings }
     };
     if strategies.is_empty() {
-        return plans.iter().map(drawn).collect();
+        return Ok(plans.iter().map(drawn).collect());
     }
     let with = |p: &NamedPlan, s: &NamedStrategies| {
         let name = if plans.len() > 1 { format!("{}, {}", p.name, s.name) } else { s.name.clone() };
-        let settings = RenderSettings { strategies: s.strategies, ..drawn(p).settings };
-        Variant { name, settings }
+        let mut settings = drawn(p).settings;
+        s.strategies.iter().try_for_each(|strategy| strategy.apply(&mut settings, scene))?;
+        Ok(Variant { name, settings })
     };
     plans.iter().flat_map(|p| strategies.iter().map(move |s| with(p, s))).collect()
 }

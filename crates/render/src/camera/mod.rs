@@ -2,27 +2,14 @@
 
 mod lens;
 mod projection;
+mod shutter;
+mod time_strategy;
 
 pub use lens::ThinLens;
 pub use projection::{Projection, ScreenWindow};
-use tenfold_math::{Motion, Ray, UVec2, Vec2, Vec3, lerp};
-
-/// The interval during which the shutter is open.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Shutter {
-    /// The instant of opening.
-    pub open: f32,
-    /// The instant of closing, not before `open`.
-    pub close: f32,
-}
-
-impl Shutter {
-    /// The instant at fraction `u` of the interval.
-    #[inline]
-    pub fn instant(&self, u: f32) -> f32 {
-        lerp(u, self.open, self.close)
-    }
-}
+pub use shutter::{Shutter, ShutterCurve, ShutterSample};
+use tenfold_math::{Motion, Ray, UVec2, Vec2, Vec3};
+pub use time_strategy::{PathTimes, TimeStrategy};
 
 /// A camera, perhaps moving. Camera space has the view along +z, +y up and +x to the right.
 #[derive(Clone, Debug)]
@@ -50,11 +37,9 @@ pub struct PixelDifferentials {
 
 impl Camera {
     /// The ray through `film` (in pixels from the upper left corner of the picture) and the point of the lens that
-    /// `u_lens` chooses, at fraction `u_time` of the shutter interval. Its direction has unit length, and its
-    /// weight is one.
+    /// `u_lens` chooses, at an instant. Its direction has unit length, and its weight is one.
     #[inline]
-    pub fn ray(&self, film: Vec2, u_lens: Vec2, u_time: f32) -> Ray {
-        let time = self.shutter.instant(u_time);
+    pub fn ray(&self, film: Vec2, u_lens: Vec2, time: f32) -> Ray {
         let mut ray = self.projection.ray(film / self.resolution.as_vec2());
         if let Some(lens) = &self.lens {
             ray = lens.refract(ray, u_lens);
@@ -101,7 +86,7 @@ mod tests {
             world_from_camera: Motion::still(Transform::IDENTITY),
             projection,
             lens,
-            shutter: Shutter { open: 0.0, close: 1.0 },
+            shutter: Shutter { open: 0.0, close: 1.0, curve: ShutterCurve::Box },
             resolution: UVec2::new(200, 100),
         }
     }

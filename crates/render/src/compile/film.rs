@@ -71,7 +71,7 @@ pub(super) fn compile_film(cx: &Context<'_>, entity: Option<&Entity>) -> Option<
 }
 
 /// Exposes the film for as long as the shutter is open, as pbrt-v4 does, unless the film says an exposure time itself.
-pub(super) fn expose(spec: &mut FilmSpec, entity: Option<&Entity>, shutter: Shutter) {
+pub(super) fn expose(spec: &mut FilmSpec, entity: Option<&Entity>, shutter: &Shutter) {
     if entity.is_none_or(|e| e.params.get("exposuretime").is_none()) {
         spec.sensor = spec.sensor.exposed(shutter.close - shutter.open);
     }

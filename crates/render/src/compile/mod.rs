@@ -10,6 +10,7 @@ mod film;
 mod light;
 mod material;
 mod mesh;
+mod mover;
 mod settings;
 mod shape;
 mod texture;
@@ -52,11 +53,12 @@ pub fn compile(
     let textures = textures.finish(cx);
 
     let (mut film, camera) = (film?, camera?);
-    film::expose(&mut film, description.film.as_ref(), camera.shutter);
+    film::expose(&mut film, description.film.as_ref(), &camera.shutter);
     if diagnostics.has_errors() {
         return None;
     }
-    let world = shapes.world(cx, camera.shutter)?;
+    let movers = shapes.movers(description);
+    let world = shapes.world(cx, &camera.shutter)?;
     let lights = Lights::build(lights);
     Some(Scene {
         needs_footprint: textures.need_footprint(),
@@ -65,6 +67,7 @@ pub fn compile(
         film,
         world,
         surfaces: shapes.surfaces,
+        movers,
         materials,
         textures,
         lights,

@@ -4,12 +4,14 @@ use super::{
     context::Context,
     light::{AreaEmitter, compile_area_light},
     mesh,
+    mover::find_movers,
     texture::TextureLibrary,
 };
 use crate::{
     camera::Shutter,
     light::Light,
     material::{Material, Materials},
+    movers::Movers,
     scene::Surface,
     texture::FloatSlot,
 };
@@ -66,8 +68,13 @@ impl Shapes {
         compiler.shapes
     }
 
+    /// How the objects move; asked before the hierarchies are built.
+    pub(super) fn movers(&self, description: &Description) -> Movers {
+        find_movers(description, &self.geometries)
+    }
+
     /// Builds the hierarchies; the surfaces are what is left.
-    pub(super) fn world(&mut self, cx: &Context<'_>, shutter: Shutter) -> Option<World> {
+    pub(super) fn world(&mut self, cx: &Context<'_>, shutter: &Shutter) -> Option<World> {
         let built = World::build(WorldDesc {
             geometries: std::mem::take(&mut self.geometries),
             instances: std::mem::take(&mut self.instances),

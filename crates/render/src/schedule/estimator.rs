@@ -1,5 +1,6 @@
 use super::RenderSettings;
 use crate::{
+    camera::{ShutterSample, TimeStrategy},
     filter::FilterSample,
     integrator::{PathTracer, Workspace},
     scene::Scene,
@@ -9,12 +10,14 @@ use tenfold_sampling::{Dimension, PixelSample, Variable};
 use tenfold_spectrum::SampledWavelengths;
 
 /// The estimator of a pixel's integral: one sample of all its variables, from the film to the light.
-#[derive(Copy, Clone, Debug)]
+#[derive(Clone, Debug)]
 pub struct PixelEstimator<'a> {
     scene: &'a Scene,
     tracer: PathTracer<'a>,
     /// The wavelengths of all samples, where they are not drawn.
     wavelengths: Option<SampledWavelengths>,
+    /// How the time is drawn.
+    time: TimeStrategy,
 }
 
 impl<'a> PixelEstimator<'a> {
@@ -28,10 +31,11 @@ impl<'a> PixelEstimator<'a> {
             scene,
             tracer: tracer.with_indices_at(settings.index_wavelength),
             wavelengths: settings.wavelength.map(SampledWavelengths::held),
+            time: settings.time.clone(),
         }
     }
 
-    /// The linear RGB of one sample, which may not be finite, with its filter weight in.
+    /// The linear RGB of one sample, which may not be finite, with the weights of filter and shutter in.
     pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace) -> Vec3 {
         let scene = self.scene;
         let filtered = match sampler.held(Variable::Pixel) {
@@ -43,8 +47,12 @@ impl<'a> PixelEstimator<'a> {
             .wavelengths
             .unwrap_or_else(|| SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH)));
         let u_lens = sampler.get_2d(Dimension::LENS);
-        let ray = scene.camera.ray(position, u_lens, sampler.get_1d(Dimension::TIME));
+        let shutter = match sampler.held(Variable::Time) {
+            None => self.time.sample(&scene.camera.shutter, sampler.get_1d(Dimension::TIME)),
+            Some(fraction) => ShutterSample { time: scene.camera.shutter.instant(fraction.x), weight: 1.0 },
+        };
+        let ray = scene.camera.ray(position, u_lens, shutter.time);
         let radiance = self.tracer.radiance(ray, &wavelengths, sampler, workspace);
-        scene.film.sensor.rgb(radiance, &wavelengths) * filtered.weight
+        scene.film.sensor.rgb(radiance, &wavelengths) * (filtered.weight * shutter.weight)
     }
 }

@@ -8,7 +8,8 @@ use tenfold_sampling::{Draw, Variable};
 /// A held variable ([`Draw::Held`]) gives its value at every vertex of every path. What that means where it is not plain:
 ///
 /// - `Pixel`: the value is the place in the pixel's square, whatever the filter, and its weight is one.
-/// - `Lens`: ½, ½ is the middle of the lens: everything is sharp. `Time`: ½ is when half of the shutter's light has come in.
+/// - `Lens`: ½, ½ is the middle of the lens: everything is sharp. `Time`: ½ is half way between opening and closing,
+///   whatever the shutter's curve.
 /// - `LightPoint`: every light shines from one point. `ScatterDirection`: every lobe scatters in one direction, for ½, ½ in its
 ///   middle. Where light is sampled, it is found in no other way: see [`Strategies::held`](crate::integrator::Strategies::held).
 /// - `Alpha`: surfaces are there where their alpha is above the value, and else not.

@@ -1,5 +1,6 @@
 use super::NoiseSettings;
 use crate::{
+    camera::TimeStrategy,
     film::PixelBounds,
     integrator::{DispersionRule, Strategies},
     scene::Scene,
@@ -46,6 +47,8 @@ pub struct RenderSettings {
     pub wavelength: Option<f32>,
     /// The wavelength, in nm, whose index of refraction all light has; each has its own where `None`.
     pub index_wavelength: Option<f32>,
+    /// How the time is sampled.
+    pub time: TimeStrategy,
 }
 
 impl RenderSettings {
@@ -64,6 +67,12 @@ impl RenderSettings {
             strategies: Strategies::default(),
             wavelength: None,
             index_wavelength: None,
+            time: TimeStrategy::default(),
         }
+    }
+
+    /// All strategies, as the command line takes them.
+    pub fn strategy(&self) -> String {
+        format!("{},time={}", self.strategies, self.time)
     }
 }

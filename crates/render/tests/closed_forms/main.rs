@@ -21,4 +21,5 @@ mod passing;
 mod penumbra;
 mod pictures;
 mod prism;
+mod shutter;
 mod strategies;

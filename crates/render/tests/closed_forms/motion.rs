@@ -35,10 +35,23 @@ pub(crate) fn shape(polygon: &[[f64; 2]]) -> String {
 
 /// What every pixel sees of the sky, behind a polygon that `at` places at every time.
 pub(crate) fn blurred(open: f64, close: f64, at: impl Fn(f64) -> Polygon) -> Vec<f64> {
+    weighted(open, close, |_| 1.0, at)
+}
+
+/// The same with a weight for every fraction of the time.
+pub(crate) fn weighted(
+    open: f64,
+    close: f64,
+    weight: impl Fn(f64) -> f64,
+    at: impl Fn(f64) -> Polygon,
+) -> Vec<f64> {
     const STEPS: usize = 1500;
+    let fraction = |step: usize| (step as f64 + 0.5) / STEPS as f64;
+    let total: f64 = (0..STEPS).map(|step| weight(fraction(step))).sum();
     let mut covered = vec![0.0; WIDTH * HEIGHT];
     for step in 0..STEPS {
-        let polygon = at(open + (close - open) * (step as f64 + 0.5) / STEPS as f64);
+        let polygon = at(open + (close - open) * fraction(step));
+        let share = weight(fraction(step)) / total;
         for (i, sum) in covered.iter_mut().enumerate() {
             let corner = |x: usize, y: usize| [x as f64 * 0.1 - 1.0, 0.5 - y as f64 * 0.1];
             let (left, top) = (i % WIDTH, i / WIDTH);
@@ -47,7 +60,7 @@ pub(crate) fn blurred(open: f64, close: f64, at: impl Fn(f64) -> Polygon) -> Vec
             let apart = (0..2)
                 .any(|k| polygon.iter().all(|p| p[k] <= low[k]) || polygon.iter().all(|p| p[k] >= high[k]));
             if !apart {
-                *sum += area(&clip_to_box(&polygon, low, high)) / 0.01 / STEPS as f64;
+                *sum += area(&clip_to_box(&polygon, low, high)) / 0.01 * share;
             }
         }
     }

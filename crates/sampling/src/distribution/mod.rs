@@ -4,11 +4,13 @@ mod alias;
 mod discrete;
 mod piecewise_1d;
 mod piecewise_2d;
+mod piecewise_linear;
 
 pub use alias::AliasTable;
 pub use discrete::{DiscreteSample, sample_discrete};
 pub use piecewise_1d::{PiecewiseConstant1D, Sample1D};
 pub use piecewise_2d::{PiecewiseConstant2D, Sample2D};
+pub use piecewise_linear::PiecewiseLinear1D;
 
 use tenfold_math::find_interval;
 
