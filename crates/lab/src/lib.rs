@@ -4,6 +4,7 @@
 //! makes a [`Page`] of that: one HTML file that needs nothing else, with its numbers as CSV files beside it. [`plot`] draws the
 //! figures, [`Picture`] holds the pictures. An experiment that takes long tells of its [`Work`].
 
+pub mod attribution;
 pub mod convergence;
 pub mod page;
 mod picture;

@@ -1,6 +1,7 @@
 //! `tenfold lab …`: experiments, each to a page.
 
 mod convergence;
+mod noise;
 mod options;
 mod portrait;
 mod variants;
@@ -20,6 +21,7 @@ Examples:
   tenfold lab convergence integral:smooth-2d --samplers independent,jittered,zsobol -o smooth.html
   tenfold lab convergence room.pbrt --strategies combine=mis,combine=light-only,combine=bsdf-only
   tenfold lab portrait n-rooks --samples 100
+  tenfold lab noise room.pbrt
 
 Exit codes are those of tenfold: 0 done; 1 the experiment failed; 2 the scene or the command line is wrong.";
 
@@ -45,6 +47,8 @@ enum Experiment {
     Convergence(convergence::Args),
     /// What the samples of a sampler look like
     Portrait(portrait::Args),
+    /// Which variable of the integral makes a scene's noise
+    Noise(noise::Args),
 }
 
 /// Understands the command line after `tenfold lab`. `None` where help was asked for, and has been shown.
@@ -67,6 +71,7 @@ pub(crate) fn run(args: &LabArgs) -> Result<(), Failure> {
     match &args.experiment {
         Experiment::Convergence(args) => convergence::run(args),
         Experiment::Portrait(args) => portrait::run(args),
+        Experiment::Noise(args) => noise::run(args),
     }
 }
 
@@ -97,6 +102,7 @@ mod tests {
             "convergence --seeds 1",
             "convergence --reference 8",
             "convergence --max-pixels 0",
+            "noise --spp 0",
             "convergence --cropwindow 0,1",
         ] {
             let argv: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
