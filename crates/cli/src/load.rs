@@ -1,18 +1,20 @@
 //! From the scene that the command line names to the one that renders.
 
 use crate::{
-    default_scene, diagnostics,
+    diagnostics,
+    embedded::Embedded,
     failure::Failure,
     progress::{Reporter, json},
     units::plural,
 };
-use std::{io::Read, path::Path, time::Instant};
+use std::{borrow::Cow, ffi::OsStr, io::Read, path::Path, time::Instant};
 use tenfold_render::{
     compile::{coarsen, compile},
     scene::Scene,
 };
 use tenfold_scene::{
-    Description, Diagnostics, FileResources, Resources, Severity, SourceMap, read_pbrt, read_pbrt_str,
+    Description, Diagnostics, EmbeddedResources, FileResources, Resources, Severity, SourceMap, read_pbrt,
+    read_pbrt_str,
 };
 
 /// Suffixes of scene formats of other programs, which people may try.
@@ -31,6 +33,14 @@ pub(crate) struct Loaded {
     pub(crate) compile_seconds: f64,
     /// Shapes, materials, textures and lights in the file.
     pub(crate) counts: Counts,
+}
+
+impl Loaded {
+    /// What it is called, without the folder.
+    pub(crate) fn short_name(&self) -> Cow<'_, str> {
+        let file = Path::new(&self.name).file_name();
+        file.map_or(Cow::Borrowed(self.name.as_str()), OsStr::to_string_lossy)
+    }
 }
 
 /// How much a scene file holds.
@@ -58,17 +68,18 @@ impl Counts {
     }
 }
 
-/// Reads and compiles the scene at `path`, the one carried along where there is none, and tells of its faults. Its picture is
+/// Reads and compiles the scene at `path`, `embedded` where there is none, and tells of its faults. Its picture is
 /// made coarser where it has more than `most_pixels`.
 pub(crate) fn load(
     path: Option<&Path>,
+    embedded: &'static Embedded,
     quiet: bool,
     reporter: &Reporter,
     most_pixels: Option<u32>,
 ) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let mut sources = SourceMap::new();
-    let source = Source::of(path)?;
+    let source = Source::of(path, embedded)?;
     let (mut description, diagnostics) = source.read(&mut sources);
     if let Some(most) = most_pixels {
         coarsen(&mut description, most);
@@ -109,14 +120,14 @@ fn report(diagnostics: &Diagnostics, sources: &SourceMap, quiet: bool, reporter:
 
 /// Where a scene comes from.
 enum Source<'a> {
-    Embedded,
+    Embedded(&'static Embedded),
     StandardInput(String),
     File(&'a Path),
 }
 
 impl<'a> Source<'a> {
-    fn of(path: Option<&'a Path>) -> Result<Self, Failure> {
-        let Some(path) = path else { return Ok(Self::Embedded) };
+    fn of(path: Option<&'a Path>, embedded: &'static Embedded) -> Result<Self, Failure> {
+        let Some(path) = path else { return Ok(Self::Embedded(embedded)) };
         if path.as_os_str() == "-" {
             let mut bytes = Vec::new();
             std::io::stdin()
@@ -139,7 +150,7 @@ impl<'a> Source<'a> {
 
     fn name(&self) -> String {
         match self {
-            Self::Embedded => default_scene::NAME.to_owned(),
+            Self::Embedded(scene) => scene.name.to_owned(),
             Self::StandardInput(_) => "standard input".to_owned(),
             Self::File(path) => path.display().to_string(),
         }
@@ -148,9 +159,7 @@ impl<'a> Source<'a> {
     fn read(&self, sources: &mut SourceMap) -> (Description, Diagnostics) {
         let resources = self.resources();
         match self {
-            Self::Embedded => {
-                read_pbrt_str(default_scene::NAME, default_scene::TEXT, resources.as_ref(), sources)
-            }
+            Self::Embedded(scene) => read_pbrt_str(scene.name, scene.text, resources.as_ref(), sources),
             Self::StandardInput(text) => read_pbrt_str(&self.name(), text, resources.as_ref(), sources),
             Self::File(path) => read_pbrt(path, sources),
         }
@@ -158,7 +167,7 @@ impl<'a> Source<'a> {
 
     fn resources(&self) -> Box<dyn Resources> {
         match self {
-            Self::Embedded => Box::new(default_scene::resources()),
+            Self::Embedded(scene) => Box::new(EmbeddedResources::new(scene.files)),
             Self::StandardInput(_) => Box::new(FileResources::below("")),
             Self::File(path) => Box::new(FileResources::beside(path)),
         }

@@ -6,8 +6,8 @@
 
 mod args;
 mod bug;
-mod default_scene;
 mod diagnostics;
+mod embedded;
 mod failure;
 mod interrupt;
 mod lab;

@@ -1,6 +1,6 @@
 //! Pictures and their files.
 
-use crate::{args::Args, default_scene, failure::Failure, layers::Layer};
+use crate::{args::Args, embedded, failure::Failure, layers::Layer};
 use std::{
     collections::BTreeMap,
     io,
@@ -89,7 +89,7 @@ pub(crate) fn asked_for(args: &Args) -> Result<Vec<Target>, Failure> {
 /// The file to write where the command line names none: the one that the scene says.
 pub(crate) fn default_target(args: &Args, scene: &Scene) -> Result<Target, Failure> {
     if args.scene.is_none() {
-        return Target::new(Path::new(default_scene::PICTURE));
+        return Target::new(Path::new(embedded::PICTURE));
     }
     let name = scene.film.filename.as_deref().filter(|name| !name.is_empty());
     Target::new(Path::new(name.unwrap_or("tenfold.exr")))

@@ -3,6 +3,7 @@
 use crate::{
     args::Args,
     diagnostics::say,
+    embedded,
     failure::Failure,
     interrupt, layers, load,
     load::Loaded,
@@ -28,7 +29,7 @@ pub(crate) fn render(args: &Args) -> Result<(), Failure> {
     // What cannot be written must be known before the work, not after it.
     let mut targets = output::asked_for(args)?;
     targets.iter().try_for_each(Target::check_writable)?;
-    let loaded = load::load(args.scene.as_deref(), args.quiet, &reporter, None)?;
+    let loaded = load::load(args.scene.as_deref(), &embedded::DEFAULT, args.quiet, &reporter, None)?;
     if targets.is_empty() && args.pixel.is_none() {
         targets.push(output::default_target(args, &loaded.scene)?);
         targets.iter().try_for_each(Target::check_writable)?;

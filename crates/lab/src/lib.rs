@@ -6,6 +6,7 @@
 
 pub mod attribution;
 pub mod convergence;
+pub mod effects;
 pub mod page;
 mod picture;
 pub mod plot;

@@ -130,7 +130,7 @@ fn the_only_noisy_variable_gets_the_blame() {
             assert!(share.value < 0.1, "{other:?} beside {culprit:?}: {share:?}");
         }
         // All of the picture has the colour of the one.
-        let culprits = found.culprits(2);
+        let culprits = found.culprits();
         let of_culprit = culprits.iter().filter(|&&c| c == Some(i)).count();
         assert!(of_culprit * 10 > 9 * culprits.len(), "{culprit:?}: {culprits:?}");
     }

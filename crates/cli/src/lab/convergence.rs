@@ -4,7 +4,7 @@ use super::{
     options::{Common, SceneOptions, Session},
     variants::{self, NamedPlan, NamedStrategies},
 };
-use crate::{failure::Failure, load::Loaded};
+use crate::{embedded, failure::Failure, load::Loaded};
 use std::path::Path;
 use tenfold_lab::convergence::{
     self, Integral, Options, of_integral, of_scene, work_of_integral, work_of_scene,
@@ -94,10 +94,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             Subject::Integral(integral) => of_integral(integral, &plain, &options, work),
             Subject::Scene(scene) => {
                 let (loaded, settings) = &**scene;
-                let name = Path::new(&loaded.name)
-                    .file_name()
-                    .map_or(loaded.name.as_str().into(), |n| n.to_string_lossy());
-                of_scene(&name, &loaded.scene, settings, variants, &options, work)
+                of_scene(&loaded.short_name(), &loaded.scene, settings, variants, &options, work)
             }
         };
         subjects.iter().map(experiment).collect::<Result<Vec<_>, _>>()
@@ -121,7 +118,11 @@ fn subjects(args: &Args, session: &Session<'_>) -> Result<Vec<Subject>, Failure>
     }
     let subject = |text: &String| match text.strip_prefix("integral:") {
         Some(name) => integral(name).map(Subject::Integral),
-        None => Ok(Subject::Scene(Box::new(session.load(Some(Path::new(text)), &args.scene)?))),
+        None => Ok(Subject::Scene(Box::new(session.load(
+            Some(Path::new(text)),
+            &embedded::DEFAULT,
+            &args.scene,
+        )?))),
     };
     args.subjects.iter().map(subject).collect()
 }

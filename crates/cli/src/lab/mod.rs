@@ -1,6 +1,7 @@
 //! `tenfold lab …`: experiments, each to a page.
 
 mod convergence;
+mod effects;
 mod noise;
 mod options;
 mod portrait;
@@ -22,6 +23,7 @@ Examples:
   tenfold lab convergence room.pbrt --strategies combine=mis,combine=light-only,combine=bsdf-only
   tenfold lab portrait n-rooks --samples 100
   tenfold lab noise room.pbrt
+  tenfold lab effects
 
 Exit codes are those of tenfold: 0 done; 1 the experiment failed; 2 the scene or the command line is wrong.";
 
@@ -47,6 +49,8 @@ enum Experiment {
     Convergence(convergence::Args),
     /// What the samples of a sampler look like
     Portrait(portrait::Args),
+    /// A scene without its effects, with each alone and with all, at few samples and at many
+    Effects(effects::Args),
     /// Which variable of the integral makes a scene's noise
     Noise(noise::Args),
 }
@@ -71,6 +75,7 @@ pub(crate) fn run(args: &LabArgs) -> Result<(), Failure> {
     match &args.experiment {
         Experiment::Convergence(args) => convergence::run(args),
         Experiment::Portrait(args) => portrait::run(args),
+        Experiment::Effects(args) => effects::run(args),
         Experiment::Noise(args) => noise::run(args),
     }
 }
@@ -103,6 +108,7 @@ mod tests {
             "convergence --reference 8",
             "convergence --max-pixels 0",
             "noise --spp 0",
+            "effects --spp 4,0",
             "convergence --cropwindow 0,1",
         ] {
             let argv: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();

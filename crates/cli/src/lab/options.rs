@@ -3,6 +3,7 @@
 use crate::{
     args::list,
     diagnostics::say,
+    embedded::Embedded,
     failure::Failure,
     interrupt,
     load::{self, Loaded},
@@ -19,6 +20,9 @@ use std::{
 };
 use tenfold_lab::{Interrupted, Page, Work};
 use tenfold_render::{compile::crop_window, schedule::RenderSettings};
+
+/// Pictures of experiments have at most so many pixels unless told otherwise.
+const MOST_PIXELS: u32 = 10_000;
 
 /// Options of all experiments.
 #[derive(Args, Clone, Debug)]
@@ -44,9 +48,9 @@ pub(super) struct Common {
 /// Options of experiments with scenes.
 #[derive(Args, Clone, Debug)]
 pub(super) struct SceneOptions {
-    /// Make pictures coarser that have more pixels
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
-    max_pixels: u32,
+    /// Make pictures coarser that have more pixels [default: 10000, of effects 15000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) max_pixels: Option<u32>,
 
     /// Look at a part of the picture only, in fractions of width and height
     #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = list::<f32, 4>, allow_hyphen_values = true)]
@@ -74,13 +78,20 @@ impl<'a> Session<'a> {
         Ok(Self { common, page, reporter: Reporter::new(Style::Auto, common.quiet), start: Instant::now() })
     }
 
-    /// The scene at `path`, the one that comes with the program where there is none, and how it is rendered.
+    /// The scene at `path`, `embedded` where there is none, and how it is rendered.
     pub(super) fn load(
         &self,
         path: Option<&Path>,
+        embedded: &'static Embedded,
         options: &SceneOptions,
     ) -> Result<(Loaded, RenderSettings), Failure> {
-        let loaded = load::load(path, self.common.quiet, &self.reporter, Some(options.max_pixels))?;
+        let loaded = load::load(
+            path,
+            embedded,
+            self.common.quiet,
+            &self.reporter,
+            Some(options.max_pixels.unwrap_or(MOST_PIXELS)),
+        )?;
         let mut settings = RenderSettings::of(&loaded.scene);
         settings.threads = NonZeroUsize::new(self.common.nthreads.into());
         if let Some(window) = options.cropwindow {

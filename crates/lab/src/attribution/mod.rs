@@ -5,11 +5,10 @@
 //! **total** share is what would be gone were it integrated exactly; the **first-order** share is what goes where its
 //! numbers, and theirs alone, are spread evenly.
 //!
-//! Random walks in coats draw from a hash of the directions, not from a variable: their noise counts with what turns the
-//! directions, as an interaction of all that does.
+//! Random walks in coats draw from a hash of the point, the wavelength and the directions, not from a variable: their noise is an
+//! interaction of all that moves these, and in the total share of each.
 
 mod advice;
-mod brightness;
 mod group;
 mod page;
 pub mod pick_freeze;
@@ -18,7 +17,6 @@ pub use group::Group;
 pub use page::page;
 
 use crate::{Interrupted, Work};
-use brightness::{box_mean, denominators};
 use pick_freeze::{Evaluations, Share, Totals};
 use rayon::prelude::*;
 use tenfold_math::{UVec2, Vec3};
@@ -26,7 +24,7 @@ use tenfold_render::{
     film::PixelBounds,
     integrator::Workspace,
     scene::Scene,
-    schedule::{PixelEstimator, RenderSettings},
+    schedule::{PixelEstimator, RenderSettings, box_mean, brightness},
 };
 use tenfold_sampling::{Draw, SamplePlan, Sampler, SamplerKind, Variable, hash};
 
@@ -73,21 +71,29 @@ impl Attribution {
         Share { value, error }
     }
 
-    /// For each pixel the group with the largest part in the noise around it, within `radius` pixels, where there is any.
-    pub fn culprits(&self, radius: usize) -> Vec<Option<usize>> {
-        let width = self.bounds.size().x as usize;
-        let parts: Vec<Vec<f64>> = self.parts.iter().map(|part| box_mean(part, width, radius)).collect();
+    /// For each pixel the group with the largest total share around it, where there is any noise. Every pixel has one vote: the
+    /// noisiest would decide alone.
+    pub fn culprits(&self) -> Vec<Option<usize>> {
+        let share = |(part, noise): (&f64, &f64)| if *noise > 0.0 { part / noise } else { 0.0 };
+        let shares =
+            |parts: &Vec<f64>| self.smooth(&parts.iter().zip(&self.noise).map(share).collect::<Vec<_>>());
+        let shares: Vec<Vec<f64>> = self.parts.iter().map(shares).collect();
         let culprit = |pixel: usize| {
-            let largest = (0..parts.len()).max_by(|&a, &b| parts[a][pixel].total_cmp(&parts[b][pixel]))?;
-            (parts[largest][pixel] > 0.0).then_some(largest)
+            let largest = (0..shares.len()).max_by(|&a, &b| shares[a][pixel].total_cmp(&shares[b][pixel]))?;
+            (shares[largest][pixel] > 0.0).then_some(largest)
         };
         (0..self.noise.len()).map(culprit).collect()
     }
 
-    /// The noise around each pixel, within `radius` pixels: the quadratic mean.
-    pub fn noise_around(&self, radius: usize) -> Vec<f64> {
+    /// The mean noise around each pixel.
+    pub fn noise_around(&self) -> Vec<f64> {
+        self.smooth(&self.noise.iter().map(|v| v.max(0.0).sqrt()).collect::<Vec<_>>())
+    }
+
+    /// Weighted means of 9 × 9 pixels: what one pixel says is noisy itself.
+    fn smooth(&self, values: &[f64]) -> Vec<f64> {
         let width = self.bounds.size().x as usize;
-        box_mean(&self.noise, width, radius).into_iter().map(|v| v.max(0.0).sqrt()).collect()
+        box_mean(&box_mean(values, width, 2), width, 2)
     }
 }
 
@@ -123,7 +129,7 @@ pub fn attribute(
     let weights = scene.film.color_space.luminance_vector().0;
     let luminance = |rgb: Vec3| f64::from(rgb.dot(weights));
     let means: Vec<f64> = picture.iter().map(|&rgb| luminance(rgb)).collect();
-    let denominators = denominators(&means, bounds.size().x as usize);
+    let brightness = brightness(&means, bounds.size().x as usize);
 
     let plans = |groups: &[Group]| Plans::new(&settings.sampling, groups, samples, seed);
     let everything = plans(&Group::ALL);
@@ -187,7 +193,7 @@ pub fn attribute(
                             result.dropped += 1;
                         }
                     }
-                    result.pixel(&evaluations, denominators[bounds.index(pixel)], area);
+                    result.pixel(&evaluations, brightness[bounds.index(pixel)], area);
                 }
                 result
             })
@@ -245,8 +251,8 @@ impl TileResult {
         Self { totals: Totals::new(groups, BLOCKS), dropped: 0, pixels: Vec::new() }
     }
 
-    fn pixel(&mut self, evaluations: &Evaluations, denominator: f64, area: u64) {
-        let scale = if denominator > 0.0 { 1.0 / (denominator * denominator) } else { 0.0 };
+    fn pixel(&mut self, evaluations: &Evaluations, brightness: f64, area: u64) {
+        let scale = if brightness > 0.0 { 1.0 / (brightness * brightness) } else { 0.0 };
         self.totals.add(evaluations, scale / area as f64);
         self.pixels.push(scale * evaluations.variance());
         for group in 0..self.totals.groups() {

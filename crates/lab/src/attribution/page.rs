@@ -8,8 +8,6 @@ use std::fmt::Write;
 use tenfold_image::srgb_to_linear;
 use tenfold_math::Vec3;
 
-/// Half the window over which the false-colour picture is smoothed: one pixel's parts are noisy themselves.
-const SMOOTHING: usize = 2;
 /// Pixels of the page that pictures are wide, at most.
 const PICTURE_WIDTH: u32 = 460;
 
@@ -48,9 +46,7 @@ pub fn page(scene: &str, attribution: &Attribution) -> Page {
     ));
 
     page.heading("What to do");
-    for sentence in attribution.advice() {
-        page.prose(&sentence);
-    }
+    attribution.advice().iter().for_each(|sentence| page.prose(sentence));
 
     page.heading("Where");
     let scale = (PICTURE_WIDTH / size.x.max(1)).max(1);
@@ -58,7 +54,7 @@ pub fn page(scene: &str, attribution: &Attribution) -> Page {
     let captions = [
         "The picture.".to_owned(),
         format!(
-            "The colour is that of the variable with the largest total share around a pixel (5 × 5). Brightness grows with the root of \
+            "The colour is that of the variable with the largest total share around a pixel, smoothed over 9 × 9. Brightness grows with the root of \
              the noise of one sample there, from none to {full:.2} and beyond."
         ),
     ];
@@ -106,12 +102,12 @@ fn chart(attribution: &Attribution) -> Bars {
 
 /// A pixel's colour says which group makes it noisy, its brightness how noisy it is; and the noise of the brightest.
 fn false_colours(attribution: &Attribution) -> (Vec<Vec3>, f64) {
-    let noise = attribution.noise_around(SMOOTHING);
+    let noise = attribution.noise_around();
     let mut sorted = noise.clone();
     sorted.sort_by(f64::total_cmp);
     // A few fireflies shall not darken the rest.
     let full = sorted.get(sorted.len() * 98 / 100).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE);
-    let culprits = attribution.culprits(SMOOTHING);
+    let culprits = attribution.culprits();
     let colour = |(noise, culprit): (&f64, Option<usize>)| match culprit {
         None => Vec3::ZERO,
         Some(group) => {

@@ -12,7 +12,7 @@
 //! cov = var s − E d² and var = var s + E d², both without bias: E d² is the estimator of Jansen (1999).
 //!
 //! To r(B, ABᵢ) and r(A, ABᵢ) alike r(A, B), which is zero but for chance, is the control variate, each with the other as its
-//! coefficient: r(B, ABᵢ) − r(A, ABᵢ) r(A, B). Where i matters little, ABᵢ is nearly A, and this is the difference that Saltelli et
+//! coefficient: the first-order share is r(B, ABᵢ) − r(A, ABᵢ) r(A, B). Where i matters little, ABᵢ is nearly A, and this is the difference that Saltelli et
 //! al. (2010) take. The test `sobol_indices` sets the errors of all these beside each other.
 
 /// Sums over pairs (b, c) of equally distributed values.
@@ -203,18 +203,14 @@ impl Totals {
     }
 
     fn first_order_of(&self, group: usize, set: usize) -> f64 {
-        self.correlation(sharing(group), sharing_others(group), set).unwrap_or(0.0)
+        let r = |pair| self.moments(pair, set).correlation().unwrap_or(0.0);
+        r(sharing(group)) - r(sharing_others(group)) * r(NOTHING_SHARED)
     }
 
     fn total_of(&self, group: usize, set: usize) -> f64 {
-        self.correlation(sharing_others(group), sharing(group), set).map_or(0.0, |r| 1.0 - r)
-    }
-
-    /// The correlation of `pair`, without what chance has to do with it; `control` is the pair of the same group that shares
-    /// the rest.
-    fn correlation(&self, pair: usize, control: usize, set: usize) -> Option<f64> {
         let r = |pair| self.moments(pair, set).correlation();
-        Some(r(pair)? - r(control)? * r(NOTHING_SHARED)?)
+        let chance = self.first_order_of(group, set) * r(NOTHING_SHARED).unwrap_or(0.0);
+        1.0 - (r(sharing_others(group)).unwrap_or(1.0) - chance)
     }
 
     /// Of `pair`, of all samples (0) or without a block (1 and up).

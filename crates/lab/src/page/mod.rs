@@ -4,9 +4,11 @@
 //! white. The page is well-formed XML, too.
 
 mod encode;
+mod grid;
 
 pub(crate) use encode::base64;
 pub use encode::escape;
+pub use grid::{Grid, GridRow};
 
 use crate::{Picture, Table};
 use std::{
@@ -99,6 +101,11 @@ impl Page {
         self.body.push_str("<div class=\"row\">\n");
         figures.iter().for_each(|figure| self.body.push_str(&figure.html()));
         self.body.push_str("</div>\n");
+    }
+
+    /// Adds a table of pictures.
+    pub fn grid(&mut self, grid: &Grid) {
+        self.body.push_str(&grid.html());
     }
 
     /// Adds numbers as a CSV file of that name, which is beside the page and within it. The first should have the name ""

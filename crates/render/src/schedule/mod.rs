@@ -14,7 +14,9 @@ mod render;
 mod settings;
 mod statistics;
 
-pub use adaptive::{Allocation, Noise, NoiseReport, NoiseSettings, Stop, relative_error};
+pub use adaptive::{
+    Allocation, Noise, NoiseReport, NoiseSettings, Stop, box_mean, brightness, relative_error,
+};
 pub use estimator::PixelEstimator;
 pub use frozen::Frozen;
 pub use render::{Progress, Render, render};

@@ -64,7 +64,7 @@ fn sum_of_tile_squares(values: &[f64], width: usize) -> f64 {
 
 /// The local brightness of each pixel: the mean luminance of its surroundings, as far as they are in the picture, plus 1 % of
 /// the mean of all.
-pub(super) fn brightness(luminance: &[f64], width: usize) -> Vec<f64> {
+pub fn brightness(luminance: &[f64], width: usize) -> Vec<f64> {
     let floor = FLOOR * mean(luminance);
     box_mean(luminance, width, SURROUNDINGS).into_iter().map(|d| d + floor).collect()
 }
@@ -75,7 +75,7 @@ pub(super) fn relative(variance: f64, brightness: f64) -> f64 {
 }
 
 /// The mean over windows that reach `radius` pixels from their centre in each direction, as far as there are pixels.
-pub(super) fn box_mean(values: &[f64], width: usize, radius: usize) -> Vec<f64> {
+pub fn box_mean(values: &[f64], width: usize, radius: usize) -> Vec<f64> {
     let height = values.len() / width.max(1);
     let window = |i: usize, n: usize| i.saturating_sub(radius)..(i + radius + 1).min(n);
     let pixels = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
