@@ -94,15 +94,20 @@ impl SamplesPerPixel {
 }
 
 /// What to say of samples that were left out, if any were.
-pub(crate) fn dropped(statistics: &Statistics) -> Option<String> {
+pub(crate) fn dropped(render: &Render) -> Option<String> {
+    let statistics = &render.statistics;
     let first = statistics.first_dropped.first()?;
     let (x, y) = (first.pixel.x, first.pixel.y);
     let were = if statistics.dropped == 1 { "was" } else { "were" };
-    Some(format!(
-        "warning: {} {were} not finite and {were} left out; the first is sample {} of pixel {x},{y} (--pixel {x},{y} renders it alone)",
-        plural(statistics.dropped as usize, "sample"),
-        first.index,
-    ))
+    let samples = plural(statistics.dropped as usize, "sample");
+    let place = match render.noise {
+        // The same pixel alone would get other samples.
+        Some(_) => format!("the first is in pixel {x},{y}"),
+        None => {
+            format!("the first is sample {} of pixel {x},{y} (--pixel {x},{y} renders it alone)", first.index)
+        }
+    };
+    Some(format!("warning: {samples} {were} not finite and {were} left out; {place}"))
 }
 
 /// What programs are told at the end.

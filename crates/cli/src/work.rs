@@ -188,7 +188,7 @@ fn tell(args: &Args, loaded: &Loaded, settings: &RenderSettings, render: &Render
         let _ = writeln!(std::io::stdout().lock(), "{x},{y}: {} {} {}", value.x, value.y, value.z);
     }
     if !args.quiet {
-        if let Some(warning) = report::dropped(&render.statistics) {
+        if let Some(warning) = report::dropped(render) {
             say(&warning);
         }
         say(&report::closing_line(render, settings, written));

@@ -56,6 +56,18 @@ impl Knowledge {
         }
     }
 
+    /// After a stage of `spent` samples of every pixel in rows of `width`, with mean luminance 1 and these variances of one
+    /// sample.
+    #[cfg(test)]
+    pub(super) fn of(width: usize, variances: &[f64], spent: u32) -> Self {
+        let n = f64::from(spent);
+        let level = ops::log2(n / 4.0);
+        let pixel =
+            |variance: &f64| PixelKnowledge { spent, luminance: n, variance: n * variance, level: n * level };
+        let last = u64::from(spent) * variances.len() as u64;
+        Self { last, level, pixels: variances.iter().map(pixel).collect(), ..Self::new(0, width) }
+    }
+
     /// Learns from a stage that has been done in full.
     pub(super) fn add(&mut self, plan: &Plan, stage: &Stage) {
         let moments = stage.moments();

@@ -5,6 +5,7 @@ use super::{
     knowledge::Knowledge,
     noise::{box_mean, mean},
 };
+use std::collections::BTreeMap;
 use tenfold_math::ops;
 use tenfold_sampling::neyman_shares;
 
@@ -131,10 +132,18 @@ fn picture(
         rounds: u32,
         variance: f64,
     }
-    let level_of = |p: usize, level: i32, rounds: u32| {
+    let level_of = |kind: Kind, level: i32, rounds: u32| {
         let least = ceil_log2(limits.min_spp.div_ceil(rounds));
-        bounded(level + offsets[p], least, limits.max_spp.saturating_sub(knowledge.spent_on(p)) / rounds)
+        bounded(level.saturating_add(kind.offset), least, limits.max_spp.saturating_sub(kind.spent) / rounds)
     };
+    let kind_of = |p: usize| Kind { offset: offsets[p], spent: knowledge.spent_on(p) };
+    // Pixels are of few kinds, and there are many plans to compare.
+    let mut kinds = BTreeMap::<Kind, (u64, f64)>::new();
+    for (p, variance) in variances.iter().enumerate() {
+        let (count, sum) = kinds.entry(kind_of(p)).or_default();
+        *count += 1;
+        *sum += variance;
+    }
     let pixels = variances.len() as f64;
     let aim = limits.target.map(|target| (AIM * target) * (AIM * target));
     let mut best: Option<Best> = None;
@@ -143,13 +152,13 @@ fn picture(
         let mut grows = false;
         for rounds in PICTURE_ROUNDS {
             let (mut samples, mut variance, mut levels) = (0, 0.0, 0);
-            for (p, relative) in variances.iter().enumerate() {
-                let level_of_pixel = level_of(p, level, rounds);
-                let n = u64::from(rounds) << level_of_pixel;
-                grows |= level_of(p, i32::MAX / 2, rounds) > level_of_pixel;
-                levels += u64::from(level_of_pixel);
-                samples += n;
-                variance += relative / n as f64;
+            for (&kind, (count, sum)) in &kinds {
+                let level_of_kind = level_of(kind, level, rounds);
+                let n = u64::from(rounds) << level_of_kind;
+                grows |= level_of(kind, i32::MAX, rounds) > level_of_kind;
+                levels += count * u64::from(level_of_kind);
+                samples += count * n;
+                variance += sum / n as f64;
             }
             if affordable.is_some_and(|most| samples as f64 > most * pixels) {
                 end = Stop::TimeLimit;
@@ -171,8 +180,17 @@ fn picture(
         }
     }
     let Best { level, rounds, .. } = best?;
-    let levels = (0..variances.len()).map(|p| level_of(p, level, rounds)).collect();
+    let levels = (0..variances.len()).map(|p| level_of(kind_of(p), level, rounds)).collect();
     Some(Plan { levels, rounds, end: Some(end), later: 0 })
+}
+
+/// What decides over the samples of a pixel, the scale of the plan aside.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Kind {
+    /// By how many levels it differs from the average pixel.
+    offset: i32,
+    /// Samples taken.
+    spent: u32,
 }
 
 /// By how many levels each pixel differs from the average one.
@@ -193,4 +211,88 @@ fn bounded(level: i32, least: u8, most: u32) -> u8 {
 /// The level of rounds of at least `n` samples.
 fn ceil_log2(n: u32) -> u8 {
     (n.max(1).next_power_of_two().ilog2() as u8).min(HIGHEST_LEVEL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 32;
+
+    fn target(target: f64) -> NoiseSettings {
+        NoiseSettings { target: Some(target), ..NoiseSettings::default() }
+    }
+
+    /// A picture of mean luminance 1, whose samples have these variances.
+    fn known(variance: impl Fn(usize) -> f64, spent: u32) -> Knowledge {
+        Knowledge::of(SIDE, &(0..SIDE * SIDE).map(variance).collect::<Vec<_>>(), spent)
+    }
+
+    fn stage(next: Next) -> Plan {
+        match next {
+            Next::Stage(plan) => plan,
+            Next::Stop => panic!("no stage"),
+        }
+    }
+
+    #[test]
+    fn the_picture_has_the_samples_that_the_target_needs() {
+        // Relative variance 1 / 1.01² of a sample.
+        let knowledge = known(|_| 1.0, 64);
+        for wanted in [0.1, 0.05, 0.04] {
+            let plan = stage(Plan::next(&knowledge, &target(wanted), None));
+            let needed = 1.0 / (1.01 * wanted * AIM).powi(2);
+            let n = f64::from(plan.samples_of(0));
+            assert_eq!(plan.end, Some(Stop::Target));
+            // Steps of a sixth at most; larger rounds are presumed to gain a little.
+            assert!((0.7 * needed..1.18 * needed).contains(&n), "{n} for {needed}");
+            assert!(plan.levels.iter().all(|l| *l == plan.levels[0]));
+        }
+    }
+
+    #[test]
+    fn targets_far_away_are_scouted_for_first() {
+        let plan = stage(Plan::next(&known(|_| 1.0, 64), &target(0.001), None));
+        assert_eq!((plan.end, plan.samples()), (None, 64 * (SIDE * SIDE) as u64));
+        assert!(plan.later > plan.samples());
+    }
+
+    #[test]
+    fn samples_go_where_the_error_is() {
+        let half = |p: usize| if p % SIDE < SIDE / 2 { 0.01 } else { 1.0 };
+        let plan = stage(Plan::next(&known(half, 64), &target(0.05), None));
+        let (calm, noisy) = (plan.samples_of(SIDE * 8 + 2), plan.samples_of(SIDE * 8 + SIDE - 3));
+        // √(0.9 · 1 + 0.1 · 0.505) / √(0.9 · 0.01 + 0.1 · 0.505) = 4, to powers of two.
+        assert_eq!(noisy, 4 * calm);
+        let uniform = NoiseSettings { allocation: Allocation::Uniform, ..target(0.05) };
+        let all_alike = stage(Plan::next(&known(half, 64), &uniform, None));
+        assert!(all_alike.samples() > plan.samples());
+    }
+
+    #[test]
+    fn time_and_most_samples_bound_the_picture() {
+        let knowledge = known(|_| 1.0, 64);
+        let plan = stage(Plan::next(&knowledge, &target(0.01), Some(500.0)));
+        assert_eq!(plan.end, Some(Stop::TimeLimit));
+        assert!((400..=475).contains(&plan.samples_of(0)));
+        // Less than there is already.
+        assert_eq!(Plan::next(&knowledge, &target(0.01), Some(40.0)), Next::Stop);
+        let limits = NoiseSettings { max_spp: 1000, ..target(0.01) };
+        let plan = stage(Plan::next(&knowledge, &limits, None));
+        assert_eq!((plan.end, plan.samples_of(0)), (Some(Stop::MostSamples), 7 * 128));
+    }
+
+    #[test]
+    fn first_stages_keep_to_small_limits() {
+        for (min_spp, max_spp, samples, is_picture) in [
+            (16, 1000, 16, false),
+            (10, 1000, 16, false),
+            (1, 1, 1, true),
+            (1, 7, 7, true),
+            (16, 30, 28, true),
+        ] {
+            let plan = Plan::first(&NoiseSettings { min_spp, max_spp, ..target(0.1) }, 4);
+            assert_eq!((plan.samples(), plan.end.is_some()), (4 * samples, is_picture), "{max_spp}");
+        }
+    }
 }
