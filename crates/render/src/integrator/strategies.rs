@@ -4,7 +4,7 @@ use std::fmt;
 use tenfold_sampling::{Draw, SamplePlan, Variable};
 
 /// How the variables of the integral that depend on the scene are sampled: uniformly with weights, or by a density
-/// that follows what is integrated. The picture is the same for all but for its noise, of which the default has the least.
+/// that follows what is integrated. The picture is the same for all but for its noise. The defaults do well in every scene.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Strategies {
     /// The point on a light.
