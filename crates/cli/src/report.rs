@@ -7,7 +7,7 @@ use crate::{
     units::{bytes, count, digits, duration, plural},
 };
 use serde_json::{Value, json};
-use tenfold_render::schedule::{Noise, NoiseReport, Render, RenderSettings, Statistics, Stop};
+use tenfold_render::schedule::{Noise, NoiseReport, Render, RenderSettings, Stop};
 
 /// The closing line.
 pub(crate) fn closing_line(render: &Render, settings: &RenderSettings, written: &[Target]) -> String {
