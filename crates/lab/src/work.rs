@@ -1,4 +1,7 @@
-use std::time::Instant;
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
 use tenfold_render::{
     scene::Scene,
     schedule::{self, Progress, Render, RenderSettings},
@@ -30,11 +33,15 @@ impl<'a> Work<'a> {
     /// # Errors
     /// [`Interrupted`] where the observer did not want to go on.
     pub fn render(&mut self, scene: &Scene, settings: &RenderSettings) -> Result<Render, Interrupted> {
+        // A render of one piece of work is complete before anybody can end it; the experiment is not.
+        let ended = AtomicBool::new(false);
         let render = schedule::render(scene, settings, &|progress| {
-            (self.observe)(self.progress(self.done + progress.done))
+            let go_on = (self.observe)(self.progress(self.done + progress.done));
+            ended.fetch_or(!go_on, Ordering::Relaxed);
+            go_on
         });
         self.done += render.statistics.samples;
-        if render.complete { Ok(render) } else { Err(Interrupted) }
+        if render.complete && !ended.into_inner() { Ok(render) } else { Err(Interrupted) }
     }
 
     /// Tells that `samples` more have been taken.

@@ -102,7 +102,7 @@ impl Chart {
         };
         let y = self.y.fitted(points().flat_map(reach));
         let ticks = [
-            x.ticks((self.area[0] / 65.0).max(3.0) as usize),
+            x.ticks((self.area[0] / 60.0).max(3.0) as usize),
             y.ticks((self.area[1] / 40.0).max(3.0) as usize),
         ];
 

@@ -81,7 +81,7 @@ fn offsets(portrait: &Portrait) -> Chart {
     chart.area[1] = 200.0;
     for (i, projection) in portrait.projections.iter().enumerate() {
         let points = projection.sorted.iter().zip(projection.offsets()).map(|(u, offset)| [*u, offset]);
-        chart.series.push(Series::new(projection.name, Mark::Line, i, points));
+        chart.series.push(Series::new(projection.name, Mark::Dots, i, points));
     }
     for (i, level) in [-0.5, 0.5].into_iter().enumerate() {
         let name = if i == 0 { "±½ stratum" } else { "" };
@@ -103,7 +103,7 @@ fn discrepancies(portrait: &Portrait) -> [Chart; 2] {
     let both = [(&portrait.name[..], &portrait.discrepancies), ("independent", &portrait.independent)];
     let chart = |label: &str, of: fn(&Discrepancy) -> [f64; 2]| {
         let mut chart = Chart::new(Axis::log2("samples"), Axis::log(label));
-        chart.area = [300.0, 260.0];
+        chart.area = [250.0, 240.0];
         for (color, (name, all)) in both.into_iter().enumerate() {
             let point = |d: &Discrepancy| {
                 let [y, error] = of(d);
@@ -131,11 +131,11 @@ fn discrepancies(portrait: &Portrait) -> [Chart; 2] {
 fn spectrum(spectrum: &Spectrum, name: &str, frequency: &str) -> Vec<Figure> {
     let grey: Vec<f32> = spectrum.power.iter().map(|p| (0.5 * p) as f32).collect();
     let picture = Picture::from_grey(spectrum.side(), &grey).ok();
-    let scale = (260 / spectrum.side()).max(1);
+    let scale = (260.0 / f64::from(spectrum.side())).round().max(1.0) as u32;
     let largest = spectrum.largest;
     let caption = format!("Power at frequencies from −{largest} to {largest} in both directions.");
     let mut radial = Chart::new(Axis::linear(frequency), Axis::linear("power").range(0.0, 2.0));
-    radial.area = [300.0, 220.0];
+    radial.area = [270.0, 220.0];
     radial.series.push(Series::new(name, Mark::Line, 0, spectrum.radial()));
     let one = Series::new("independent", Mark::Dashes, 0, [[0.0, 1.0], [largest.into(), 1.0]]);
     radial.series.push(Series { color: None, ..one });
