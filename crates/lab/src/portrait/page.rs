@@ -43,7 +43,7 @@ pub fn page(portrait: &Portrait) -> Page {
         Figure::drawing(&star.svg(), "Star discrepancy against the number of samples."),
         Figure::drawing(
             &l2.svg(),
-            "L2 star discrepancy. Dashed: the expectation of independent points, √(5/36 N).",
+            "L2 star discrepancy. Dashed: √(5/36 N), the root of the mean square of independent points.",
         ),
     ]);
 
