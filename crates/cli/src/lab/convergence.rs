@@ -23,13 +23,11 @@ const KINDS: [SamplerKind; 7] = [
     SamplerKind::ZSobol,
 ];
 
-/// Compares how fast ways to draw the samples converge.
-///
-/// SCENE is a file in pbrt-v4's format or one of the integrals with known values, integral:smooth-2d, integral:smooth-4d,
-/// integral:smooth-10d, integral:disk-2d; without any, these four are looked at.
+/// What to compare, and on what.
 #[derive(clap::Args, Clone, Debug)]
 pub(super) struct Args {
-    /// Scenes, or integrals
+    /// Scenes (.pbrt), or integrals whose value is known: integral:smooth-2d, integral:disk-2d, integral:smooth-4d,
+    /// integral:smooth-10d [default: these four]
     #[arg(value_name = "SCENE")]
     subjects: Vec<String>,
 

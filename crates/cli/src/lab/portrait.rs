@@ -7,7 +7,7 @@ use super::{
 use crate::failure::Failure;
 use tenfold_lab::portrait::{self, Options};
 
-/// Shows what the samples of a sampler look like: points, discrepancy, spectra.
+/// Whose samples, and how many.
 #[derive(clap::Args, Clone, Debug)]
 pub(super) struct Args {
     /// The sampler
