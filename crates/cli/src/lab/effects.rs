@@ -5,10 +5,7 @@ use crate::{embedded, failure::Failure};
 use std::path::PathBuf;
 use tenfold_lab::effects::{page, table, work_of};
 
-/// A scene without its effects, with each alone and with all, at few samples and at many.
-///
-/// Anti-aliasing, depth of field, motion blur, soft shadows, gloss and dispersion are switched off by holding their variables, as
-/// --freeze does.
+/// Whose effects, and at how many samples.
 #[derive(clap::Args, Clone, Debug)]
 pub(super) struct Args {
     /// The scene; without it, one that comes with the program and has them all

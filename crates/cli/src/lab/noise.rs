@@ -10,10 +10,7 @@ use crate::{
 use std::path::PathBuf;
 use tenfold_lab::attribution::{attribute, page, work_of};
 
-/// Which variable of the integral makes a scene's noise.
-///
-/// Each variable's share of the variance of single samples, by itself (first-order) and in all that it takes part in (total),
-/// estimated by pick and freeze (Sobol' indices), and where in the picture which of them is to blame.
+/// Whose noise, and how well it is to be known.
 #[derive(clap::Args, Clone, Debug)]
 pub(super) struct Args {
     /// The scene; without it, the one that comes with the program

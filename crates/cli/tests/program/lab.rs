@@ -32,10 +32,27 @@ fn experiments_write_pages_and_numbers() {
 }
 
 #[test]
+fn noise_and_effects_take_the_scene_or_one_of_their_own() {
+    let place = Place::new();
+    place.succeed(
+        "lab noise scene.pbrt --spp 1 --max-pixels 30 --strategy light=uniform-area --freeze lens -q",
+    );
+    let noise = std::fs::read_to_string(place.path("noise.csv")).unwrap();
+    assert!(noise.starts_with("variable,first-order share,first-order share standard error,total share"));
+    assert!(noise.contains("\nlens,0,,0,,") && !noise.contains("\nscatter,0,"), "{noise}");
+    let run = place.succeed("lab effects --spp 2,1 --max-pixels 60");
+    assert!(run.err.contains("wrote effects.html, effects.csv"), "{}", run.err);
+    // Eight rows of two pictures, and a line of names.
+    assert_eq!(std::fs::read_to_string(place.path("effects.csv")).unwrap().lines().count(), 17);
+    let run = place.run("lab noise scene.pbrt --strategy time=path:nobody");
+    assert!(run.code == Some(2) && run.err.contains("nobody"), "{}", run.err);
+}
+
+#[test]
 fn help_names_the_experiments() {
     let place = Place::new();
     let run = place.succeed("lab --help");
-    for part in ["convergence", "portrait", "Exit codes"] {
+    for part in ["convergence", "effects", "noise", "portrait", "Exit codes"] {
         assert!(run.out.contains(part), "{part}");
     }
     assert!(place.succeed("lab convergence --help").out.contains("integral:smooth-10d"));

@@ -18,8 +18,8 @@ pub fn page(scene: &str, attribution: &Attribution) -> Page {
     let size = attribution.bounds.size();
     page.prose(&format!(
         "Which variable makes the noise? One independent sample a pixel has a noise of {:.3} ± {:.3}: the quadratic mean over the \
-         pixels of standard error over brightness around. {} samples a pixel make it {:.4}. Measured with {} samples of each of {} × {} \
-         pixels, {} million evaluations.",
+         pixels of standard error over brightness around. {} such samples a pixel make it {:.4}. Measured with {} samples of each of \
+         {} × {} pixels, {} million evaluations.",
         noise.value,
         noise.error,
         attribution.samples,

@@ -14,11 +14,12 @@ pub fn page(scene: &str, width: u32, rows: &[Row]) -> Page {
     page.prose(
         "Every optical effect is a variable of one integral. Where the variable is held at one value the effect is gone; where it is \
          drawn for every sample it is there, and with few samples a pixel is noisy. All variables are drawn together, by the same \
-         samples: all effects together cost no more rays than one.",
+         samples: their numbers do not multiply.",
     );
     page.prose(
         "Below each picture its noise, the quadratic mean over the pixels of error over brightness around, and the seconds that it \
-         took. Choices, of a light or of reflection against refraction, and wavelengths are drawn in all rows.",
+         took. Choices, of a light or of reflection against refraction, and wavelengths are drawn in all rows. Where directions \
+         are held, those of matt surfaces are, too: light that came by way of other surfaces is left as faint images of them.",
     );
     let counts = || rows.first().into_iter().flat_map(|row| row.cells.iter().map(|cell| cell.spp));
     let columns = counts().map(|n| format!("{n} sample{}", if n == 1 { "" } else { "s" })).collect();
