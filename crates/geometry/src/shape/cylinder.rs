@@ -1,7 +1,6 @@
 use super::{
     ShapeError, ShapeHit,
-    disk::azimuth,
-    quadric::{ObjectRay, Placement, check_finite, integrate, roots},
+    quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
     NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, interaction::weingarten,
@@ -111,26 +110,17 @@ impl Cylinder {
         &self,
         ray: &Ray,
         t_max: f32,
-        mut accept: impl FnMut(ShapeHit) -> bool,
+        accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
         let object = self.placement.ray(ray);
         let flat = |v: DVec3| DVec3::new(v.x, v.y, 0.0);
         let CylinderParams { radius, z_min, z_max, phi_max } = self.params;
         let roots = roots(flat(object.o), flat(object.d), object.o_error, f64::from(radius))?;
-        for t in roots.t {
-            let hit = ShapeHit { t: t as f32, u: 0.0, v: 0.0 };
-            if t <= roots.t_error || !(hit.t < t_max) {
-                continue;
-            }
+        let is_cut_away = |t| {
             let z = object.at(t).z as f32;
-            if z < z_min || z > z_max || (phi_max < TAU && self.surface(&object, t).1 > phi_max) {
-                continue;
-            }
-            if accept(hit) {
-                return Some(hit);
-            }
-        }
-        None
+            z < z_min || z > z_max || (phi_max < TAU && self.surface(&object, t).1 > phi_max)
+        };
+        roots.first_hit(t_max, is_cut_away, accept)
     }
 
     fn object_uv(&self, p: Vec3, phi: f32) -> Vec2 {

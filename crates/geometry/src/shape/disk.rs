@@ -1,6 +1,6 @@
 use super::{
     ShapeError, ShapeHit,
-    quadric::{Placement, check_finite},
+    quadric::{Placement, azimuth, check_finite},
 };
 use crate::{
     NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, sample::pdf_by_solid_angle,
@@ -176,10 +176,4 @@ impl Disk {
     pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
         pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n)
     }
-}
-
-/// Azimuth around z in [0, 2π).
-pub(super) fn azimuth(p: Vec3) -> f32 {
-    let phi = ops::atan2(p.y, p.x);
-    if phi < 0.0 { phi + TAU } else { phi }
 }

@@ -1,7 +1,8 @@
 //! What the quadrics share: a transform, double-precision rays in object space, and area under affine maps.
 
-use crate::SurfaceInteraction;
+use crate::{ShapeHit, SurfaceInteraction};
 use glam::DVec3;
+use std::f32::consts::TAU;
 use tenfold_math::ops;
 use tenfold_math::{Ray, Transform, Vec3, gamma};
 
@@ -104,12 +105,37 @@ impl ObjectRay {
     }
 }
 
+/// Azimuth around z in [0, 2π).
+pub(super) fn azimuth(p: Vec3) -> f32 {
+    let phi = ops::atan2(p.y, p.x);
+    if phi < 0.0 { phi + TAU } else { phi }
+}
+
 /// Roots of a quadric along a ray, and from where on they count as in front of the origin.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Roots {
     pub(super) t: [f64; 2],
     /// A root up to here may be the origin's own surface.
     pub(super) t_error: f64,
+}
+
+impl Roots {
+    /// The first hit with `0 < t < t_max` that is not cut away and that `accept` takes.
+    #[inline]
+    pub(super) fn first_hit(
+        &self,
+        t_max: f32,
+        is_cut_away: impl Fn(f64) -> bool,
+        mut accept: impl FnMut(ShapeHit) -> bool,
+    ) -> Option<ShapeHit> {
+        self.t.into_iter().find_map(|t| {
+            let hit = ShapeHit { t: t as f32, u: 0.0, v: 0.0 };
+            if t <= self.t_error || !(hit.t < t_max) || is_cut_away(t) {
+                return None;
+            }
+            accept(hit).then_some(hit)
+        })
+    }
 }
 
 /// Roots of `|o + t·d|² = r²`, where `o` is known within `o_error` (leave out z for a cylinder by setting it to 0).

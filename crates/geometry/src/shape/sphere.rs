@@ -1,6 +1,6 @@
 use super::{
     ShapeError, ShapeHit,
-    quadric::{ObjectRay, Placement, check_finite, integrate, roots},
+    quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
     NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, interaction::weingarten,
@@ -151,8 +151,7 @@ impl Sphere {
         if p.x == 0.0 && p.y == 0.0 {
             p.x = 1e-5 * self.radius;
         }
-        let phi = ops::atan2(p.y, p.x);
-        (p, if phi < 0.0 { phi + TAU } else { phi })
+        (p, azimuth(p))
     }
 
     fn is_cut_away(&self, p: Vec3, phi: f32) -> bool {
@@ -166,27 +165,18 @@ impl Sphere {
         &self,
         ray: &Ray,
         t_max: f32,
-        mut accept: impl FnMut(ShapeHit) -> bool,
+        accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
         let object = self.placement.ray(ray);
         let roots = roots(object.o, object.d, object.o_error, f64::from(self.radius))?;
         let whole = self.phi_max == TAU && self.z_min == -self.radius && self.z_max == self.radius;
-        for t in roots.t {
-            let hit = ShapeHit { t: t as f32, u: 0.0, v: 0.0 };
-            if t <= roots.t_error || !(hit.t < t_max) {
-                continue;
-            }
-            if !whole {
+        let is_cut_away = |t| {
+            !whole && {
                 let (p, phi) = self.surface(&object, t);
-                if self.is_cut_away(p, phi) {
-                    continue;
-                }
+                self.is_cut_away(p, phi)
             }
-            if accept(hit) {
-                return Some(hit);
-            }
-        }
-        None
+        };
+        roots.first_hit(t_max, is_cut_away, accept)
     }
 
     fn object_uv(&self, p: Vec3, phi: f32) -> Vec2 {
