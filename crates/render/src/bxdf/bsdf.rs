@@ -10,19 +10,28 @@ pub struct Bsdf<'a> {
     frame: Frame,
     bxdf: Bxdf<'a>,
     strategy: ScatterStrategy,
+    /// Whether its one direction is that of a mirror.
+    mirrors: bool,
 }
 
 impl<'a> Bsdf<'a> {
     /// Puts `bxdf` in the shading frame `frame`, whose z is the shading normal.
     #[inline]
     pub fn new(frame: Frame, bxdf: Bxdf<'a>) -> Self {
-        Self { frame, bxdf, strategy: ScatterStrategy::Bsdf }
+        Self { frame, bxdf, strategy: ScatterStrategy::Bsdf, mirrors: false }
     }
 
     /// Has directions sampled by `strategy`; by the scattering function unless set.
     #[inline]
     pub fn set_strategy(&mut self, strategy: ScatterStrategy) {
         self.strategy = strategy;
+    }
+
+    /// Has every sample scatter in one direction, which the caller sees to. Surfaces without a diffuse lobe then are mirrors:
+    /// they show lights, and none is to be sampled for them.
+    #[inline]
+    pub fn hold_direction(&mut self) {
+        self.mirrors = !self.bxdf.lobes().contains(Lobe::DIFFUSE);
     }
 
     /// The shading frame.
@@ -40,7 +49,7 @@ impl<'a> Bsdf<'a> {
     /// What it can do.
     #[inline]
     pub fn lobes(&self) -> Lobe {
-        self.bxdf.lobes()
+        if self.mirrors { self.bxdf.lobes().sharpened() } else { self.bxdf.lobes() }
     }
 
     /// As [`Bxdf::is_dispersive`].
@@ -53,7 +62,7 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn parts_wavelengths(&self) -> bool {
         self.bxdf.parts_wavelengths()
-            && (self.strategy == ScatterStrategy::Bsdf || !self.lobes().has_density())
+            && (self.strategy == ScatterStrategy::Bsdf || !self.bxdf.lobes().has_density())
     }
 
     /// The BSDF per lane in sr⁻¹, without the cosine; 0 of specular lobes. As [`Bxdf::eval`].
@@ -95,7 +104,8 @@ impl<'a> Bsdf<'a> {
 
     #[inline]
     fn in_world(&self, sample: BsdfSample) -> BsdfSample {
-        BsdfSample { wi: self.frame.to_world(sample.wi), ..sample }
+        let lobe = if self.mirrors { sample.lobe.sharpened() } else { sample.lobe };
+        BsdfSample { wi: self.frame.to_world(sample.wi), lobe, ..sample }
     }
 }
 

@@ -40,6 +40,12 @@ impl Lobe {
         self.0 & (Self::DIFFUSE.0 | Self::GLOSSY.0) != 0
     }
 
+    /// The same sides, by deltas alone.
+    #[inline]
+    pub(super) const fn sharpened(self) -> Self {
+        Self(self.0 & (Self::REFLECTION.0 | Self::TRANSMISSION.0) | Self::SPECULAR.0)
+    }
+
     /// Whether a path can be reflected.
     #[inline]
     pub const fn is_reflective(self) -> bool {

@@ -143,22 +143,16 @@ impl<'a> PathTracer<'a> {
                 path.settle();
             }
             let from = surface.reference();
-            // A glossy lobe whose direction is held is a mirror's: it shows lights, and none is sampled for it.
-            let mirrors = sample.sampler.held(Variable::ScatterDirection).is_some()
-                && !bsdf.lobes().contains(Lobe::DIFFUSE);
-            if bsdf.lobes().has_density() && !mirrors {
+            if bsdf.lobes().has_density() {
                 self.add_direct(&path, &surface, &from, &bsdf, parts, sample);
             }
             if parts {
-                self.part(&path, &surface, &from, &bsdf, mirrors, sample);
+                self.part(&path, &surface, &from, &bsdf, sample);
                 return;
             }
             let u_lobe = sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce));
             let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
-            let Some(mut scattered) = bsdf.sample(surface.wo, u_lobe, u, path.lanes.hero()) else { return };
-            if mirrors {
-                scattered.lobe |= Lobe::SPECULAR;
-            }
+            let Some(scattered) = bsdf.sample(surface.wo, u_lobe, u, path.lanes.hero()) else { return };
             if !advance(&mut path, &surface, &from, &bsdf, &scattered) || !survives(&mut path, sample) {
                 return;
             }
@@ -196,6 +190,9 @@ impl<'a> PathTracer<'a> {
         let mut bsdf = scene.materials.bsdf(material, &scene.textures, surface, &at, waves, u_mix);
         if let Some(bsdf) = &mut bsdf {
             bsdf.set_strategy(self.strategies.scatter);
+            if sample.sampler.held(Variable::ScatterDirection).is_some() {
+                bsdf.hold_direction();
+            }
         }
         bsdf
     }
@@ -275,7 +272,6 @@ impl<'a> PathTracer<'a> {
         surface: &SurfaceInteraction,
         from: &ReferencePoint,
         bsdf: &Bsdf<'_>,
-        mirrors: bool,
         sample: &mut Sample<'_>,
     ) {
         // All lanes use the same random numbers: as dispersion tends to zero, so do their differences.
@@ -284,10 +280,7 @@ impl<'a> PathTracer<'a> {
         let mut reflected = 0u8;
         let mut reflection: Option<BsdfSample> = None;
         for lane in (0..N).filter(|&lane| path.lanes.carries(lane)) {
-            let Some(mut s) = bsdf.sample(surface.wo, u_lobe, u, lane) else { continue };
-            if mirrors {
-                s.lobe |= Lobe::SPECULAR;
-            }
+            let Some(s) = bsdf.sample(surface.wo, u_lobe, u, lane) else { continue };
             if s.lobe.contains(Lobe::REFLECTION) && s.lobe.is_specular() {
                 reflected |= 1 << lane;
                 // Per lane its own weight and probability, whichever lanes were reflected.
