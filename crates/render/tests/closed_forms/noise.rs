@@ -102,8 +102,9 @@ fn renders_say_why_they_ended() {
     let limited = stop(NoiseSettings { time_limit: Some(0.3), ..NoiseSettings::default() });
     assert!(limited.stop == Stop::TimeLimit && limited.reached.unwrap().value > 0.0);
 
-    let settings = RenderSettings { noise: Some(target(1e-6)), ..RenderSettings::of(&scene) };
-    // Within the second round, and within the picture's.
+    // Within the second round, and within the picture's. One thread alone: with more, all tiles of a round may be under way.
+    let threads = NonZeroUsize::new(1);
+    let settings = RenderSettings { noise: Some(target(1e-6)), threads, ..RenderSettings::of(&scene) };
     for most in [(WIDTH * HEIGHT * 6) as u64, 100_000] {
         let taken = AtomicU64::new(0);
         let ended = render(&scene, &settings, &|progress| {
