@@ -221,14 +221,23 @@ pub(crate) fn parse(argv: Vec<OsString>) -> Result<Request, Failure> {
     let command = Args::command();
     let translated = pbrt_options::translate(argv, &command)?;
     let program = std::iter::once(OsString::from("tenfold"));
-    let matched = command.try_get_matches_from(program.chain(translated.argv));
-    match matched.and_then(|matches| Args::from_arg_matches(&matches)) {
-        Ok(args) => Ok(Request::Render(Box::new(args), translated.notes)),
+    let args = understand::<Args>(command, program.chain(translated.argv))?;
+    Ok(args.map_or(Request::Shown, |args| Request::Render(Box::new(args), translated.notes)))
+}
+
+/// Has `command` understand a whole command line. `None` where help or the version was asked for, and has been shown.
+pub(crate) fn understand<T: FromArgMatches>(
+    command: clap::Command,
+    argv: impl IntoIterator<Item = OsString>,
+) -> Result<Option<T>, Failure> {
+    let matched = command.try_get_matches_from(argv);
+    match matched.and_then(|matches| T::from_arg_matches(&matches)) {
+        Ok(args) => Ok(Some(args)),
         Err(error) if error.use_stderr() => Err(Failure::Usage(error.render().to_string())),
         Err(shown) => {
-            // The text of help and version; where nobody reads it there is nobody to tell.
+            // Where nobody reads it there is nobody to tell.
             let _ = shown.print();
-            Ok(Request::Shown)
+            Ok(None)
         }
     }
 }

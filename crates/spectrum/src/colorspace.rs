@@ -163,6 +163,12 @@ impl RgbColorSpace {
         Rgb(self.rgb_to_xyz.row(1))
     }
 
+    /// The luminance Y of a colour.
+    #[inline]
+    pub fn luminance(&self, rgb: Vec3) -> f32 {
+        rgb.dot(self.luminance_vector().0)
+    }
+
     /// The reflectance spectrum of a colour, by interpolation in a table: for textures, in some tens of nanoseconds. Components are
     /// clamped to [0, 1]; greys are exact. Of sRGB, colours are met to within 1 % of the
     /// largest component, and 0.1 % on average; those between 0.05 and 0.001 to within 12 % (purples without

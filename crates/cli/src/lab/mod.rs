@@ -7,8 +7,11 @@ mod options;
 mod portrait;
 mod variants;
 
-use crate::{args::STYLES, failure::Failure};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use crate::{
+    args::{STYLES, understand},
+    failure::Failure,
+};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 
 const ABOUT: &str = "\
@@ -57,17 +60,8 @@ enum Experiment {
 
 /// Understands the command line after `tenfold lab`. `None` where help was asked for, and has been shown.
 pub(crate) fn parse(argv: &[OsString]) -> Result<Option<LabArgs>, Failure> {
-    let program = OsString::from("tenfold lab");
-    let matched = LabArgs::command().try_get_matches_from(std::iter::once(&program).chain(argv));
-    match matched.and_then(|matches| LabArgs::from_arg_matches(&matches)) {
-        Ok(args) => Ok(Some(args)),
-        Err(error) if error.use_stderr() => Err(Failure::Usage(error.render().to_string())),
-        Err(shown) => {
-            // Where nobody reads help there is nobody to tell.
-            let _ = shown.print();
-            Ok(None)
-        }
-    }
+    let program = std::iter::once(OsString::from("tenfold lab"));
+    understand(LabArgs::command(), program.chain(argv.iter().cloned()))
 }
 
 /// Does the experiment.

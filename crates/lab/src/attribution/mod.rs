@@ -126,8 +126,7 @@ pub fn attribute(
     let picture = work.render(scene, settings)?.film.means();
     let seed = hash::combine(settings.seed, SALT);
     let estimator = PixelEstimator::new(scene, settings);
-    let weights = scene.film.color_space.luminance_vector().0;
-    let luminance = |rgb: Vec3| f64::from(rgb.dot(weights));
+    let luminance = |rgb: Vec3| f64::from(scene.film.color_space.luminance(rgb));
     let means: Vec<f64> = picture.iter().map(|&rgb| luminance(rgb)).collect();
     let brightness = brightness(&means, bounds.size().x as usize);
 

@@ -1,4 +1,5 @@
 use tenfold_math::UVec2;
+use tenfold_render::schedule::tile_sums;
 
 /// A mean squared error with its standard error.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -14,9 +15,6 @@ impl MeanSquare {
         [root, if root > 0.0 { 0.5 * self.standard_error / root } else { self.standard_error.sqrt() }]
     }
 }
-
-/// Side of the tiles whose errors count as independent of each other, in pixels.
-const TILE: u32 = 8;
 
 /// Collects the squared errors of several renders, pixel by pixel.
 ///
@@ -35,12 +33,7 @@ impl SquaredErrors {
 
     /// Adds a render: the squared error of each pixel, row by row.
     pub(super) fn add(&mut self, squares: &[f64]) {
-        let columns = self.size.x.div_ceil(TILE);
-        let mut sums = vec![0.0; (columns * self.size.y.div_ceil(TILE)) as usize];
-        for (i, square) in squares.iter().enumerate() {
-            let (x, y) = (i as u32 % self.size.x, i as u32 / self.size.x);
-            sums[(y / TILE * columns + x / TILE) as usize] += square;
-        }
+        let sums = tile_sums(squares, self.size.x as usize);
         // Tiles weigh by their pixels, and sum up to the mean over all.
         self.tiles.push(sums.into_iter().map(|s| s / squares.len() as f64).collect());
     }
@@ -63,6 +56,8 @@ impl SquaredErrors {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const TILE: u32 = 8;
 
     #[test]
     fn tiles_that_differ_do_not_blur_the_mean() {

@@ -257,8 +257,7 @@ impl Reference {
 
 /// The luminance of each pixel, row by row.
 fn luminance(scene: &Scene, film: &Film) -> Vec<f64> {
-    let weights = scene.film.color_space.luminance_vector().0;
-    film.means().iter().map(|rgb| f64::from(rgb.dot(weights))).collect()
+    film.means().into_iter().map(|rgb| f64::from(scene.film.color_space.luminance(rgb))).collect()
 }
 
 /// A film as a picture of linear sRGB; `None` of an empty one.

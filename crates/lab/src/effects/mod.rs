@@ -68,10 +68,10 @@ pub fn table(
     counts: &[u32],
     work: &mut Work<'_>,
 ) -> Result<Vec<Row>, Interrupted> {
-    let weights = scene.film.color_space.luminance_vector().0;
+    let space = scene.film.color_space;
     let luminance =
-        |picture: &[Vec3]| picture.iter().map(|rgb| f64::from(rgb.dot(weights))).collect::<Vec<_>>();
-    let to_srgb = scene.film.color_space.to(RgbColorSpace::srgb());
+        |picture: &[Vec3]| picture.iter().map(|&rgb| f64::from(space.luminance(rgb))).collect::<Vec<_>>();
+    let to_srgb = space.to(RgbColorSpace::srgb());
     let width = settings.bounds.size().x as usize;
     rows()
         .map(|(name, on)| {

@@ -182,7 +182,7 @@ fn infinite(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform
     // pbrt-v4 counts the pixels of the upper hemisphere with half their solid angle of 4π; so it is here, for
     // pictures as bright as its own.
     let upper = 2.0 * PI * weighted_rgb(&image, |st| equal_area_square_to_sphere(st).z.max(0.0));
-    let factor = normalisation(illuminance, space.luminance_vector().0.dot(upper));
+    let factor = normalisation(illuminance, space.luminance(upper));
     let scale = per_photometric(&white(space), scale? * factor);
     Some(Light::Image(ImageInfinite::new(world_from_light, &image, space, scale)))
 }
@@ -209,7 +209,7 @@ fn projection(cx: &mut Context<'_>, p: &Params<'_>, t: &Transform) -> Option<Lig
     let image = image(cx, p, p.string("filename"))?;
     let space = image_space(&image);
     let screen = Screen::new(image.width(), image.height(), fov.to_radians());
-    let factor = normalisation(power, space.luminance_vector().0.dot(screen.measure(&image)));
+    let factor = normalisation(power, space.luminance(screen.measure(&image)));
     let scale = per_photometric(&white(space), scale? * factor);
     Some(Light::Projection(ProjectionLight::new(t, screen, RadianceImage::new(&image, space), scale)))
 }

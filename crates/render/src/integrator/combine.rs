@@ -15,7 +15,7 @@ pub enum CombineStrategy {
 }
 
 impl CombineStrategy {
-    /// All of them, the best first.
+    /// All of them, the default first.
     pub const ALL: [Self; 3] = [Self::Mis, Self::LightOnly, Self::BsdfOnly];
 
     /// The name, in kebab case.

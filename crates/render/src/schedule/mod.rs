@@ -15,7 +15,7 @@ mod settings;
 mod statistics;
 
 pub use adaptive::{
-    Allocation, Noise, NoiseReport, NoiseSettings, Stop, box_mean, brightness, relative_error,
+    Allocation, Noise, NoiseReport, NoiseSettings, Stop, box_mean, brightness, relative_error, tile_sums,
 };
 pub use estimator::PixelEstimator;
 pub use frozen::Frozen;

@@ -79,7 +79,7 @@ fn area_emitter(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity) -> Option
     let space = image_space(&image);
     // pbrt-v4 normalises by the scene's white even where the image has its own.
     let scale = per_photometric(&white(color_space(entity.color_space)), scale?);
-    let luminance = space.luminance_vector().0.dot(mean_rgb(&image));
+    let luminance = space.luminance(mean_rgb(&image));
     let spectra = Arc::new(RadianceImage::new(&image, space));
     let content = ImageContent { image, spectra, luminance, distributions: RefCell::default() };
     Some(AreaEmitter { content: Content::Image(content), scale, power, two_sided })

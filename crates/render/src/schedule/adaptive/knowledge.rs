@@ -91,8 +91,7 @@ impl Knowledge {
 
     /// Compares the variances of a stage with what was predicted.
     fn learn_gain(&mut self, plan: &Plan, variances: &[f64]) {
-        let brightness = self.brightness();
-        let found = variances.iter().zip(&brightness).map(|(&v, &d)| relative(v, d)).sum::<f64>();
+        let found = relative(variances, &self.brightness()).into_iter().sum::<f64>();
         let predicted = self.relative_variances().into_iter().enumerate();
         let predicted = predicted.map(|(p, v)| v / f64::from(plan.samples_of(p))).sum::<f64>();
         let gained = ops::log2(predicted / found);
@@ -137,8 +136,7 @@ impl Knowledge {
 
     /// The variance of the luminance of one sample of each pixel, relative to the squared local brightness.
     pub(super) fn relative_variances(&self) -> Vec<f64> {
-        let brightness = self.brightness();
-        self.mean(|p| p.variance).iter().zip(&brightness).map(|(&v, &d)| relative(v, d)).collect()
+        relative(&self.mean(|p| p.variance), &self.brightness())
     }
 
     fn brightness(&self) -> Vec<f64> {

@@ -14,7 +14,7 @@ mod report;
 mod settings;
 mod stage;
 
-pub use noise::{Noise, box_mean, brightness, relative_error};
+pub use noise::{Noise, box_mean, brightness, relative_error, tile_sums};
 pub use report::{NoiseReport, Stop};
 pub use settings::{Allocation, NoiseSettings};
 

@@ -30,15 +30,12 @@ impl Noise {
         brightness: &[f64],
         width: usize,
     ) -> Self {
-        let relative = |values: &[f64]| -> Vec<f64> {
-            values.iter().zip(brightness).map(|(&v, &d)| relative(v, d)).collect()
-        };
-        let square = mean(&relative(variances));
+        let square = mean(&relative(variances, brightness));
         // The mean of two estimates errs by half their difference, which is zero in the mean. Neighbours may err alike, so
         // it is tiles whose errors add by their squares.
         let interval = difference.map(|difference| {
-            let error = 0.5 * sum_of_tile_squares(&relative(difference), width).sqrt()
-                / variances.len().max(1) as f64;
+            let sums = tile_sums(&relative(difference, brightness), width);
+            let error = 0.5 * sums.iter().map(|s| s * s).sum::<f64>().sqrt() / variances.len().max(1) as f64;
             [-NORMAL_97_5, NORMAL_97_5].map(|z| (square + z * error).max(0.0).sqrt())
         });
         Self { value: square.sqrt(), interval }
@@ -52,14 +49,15 @@ impl Noise {
     }
 }
 
-/// The sum over all tiles of the square of the sum of the tile's values.
-fn sum_of_tile_squares(values: &[f64], width: usize) -> f64 {
+/// The sum of the values in each tile of 8 × 8 pixels, row by row, of a picture whose rows are of `width` pixels. Neighbours may
+/// depend on each other; tiles are taken to be independent.
+pub fn tile_sums(values: &[f64], width: usize) -> Vec<f64> {
     let columns = width.div_ceil(TILE).max(1);
     let mut sums = vec![0.0; columns * (values.len() / width.max(1)).div_ceil(TILE)];
     for (i, value) in values.iter().enumerate() {
         sums[i / width / TILE * columns + i % width / TILE] += value;
     }
-    sums.iter().map(|s| s * s).sum()
+    sums
 }
 
 /// The local brightness of each pixel: the mean luminance of its surroundings, as far as they are in the picture, plus 1 % of
@@ -69,9 +67,10 @@ pub fn brightness(luminance: &[f64], width: usize) -> Vec<f64> {
     box_mean(luminance, width, SURROUNDINGS).into_iter().map(|d| d + floor).collect()
 }
 
-/// A variance of luminance relative to the square of a brightness. What is black and has no variance has no noise.
-pub(super) fn relative(variance: f64, brightness: f64) -> f64 {
-    if variance == 0.0 { 0.0 } else { variance / (brightness * brightness) }
+/// Variances of luminance relative to the squares of brightnesses. What is black and has no variance has no noise.
+pub(super) fn relative(variances: &[f64], brightness: &[f64]) -> Vec<f64> {
+    let relative = |(&v, &d): (&f64, &f64)| if v == 0.0 { 0.0 } else { v / (d * d) };
+    variances.iter().zip(brightness).map(relative).collect()
 }
 
 /// The mean over windows that reach `radius` pixels from their centre in each direction, as far as there are pixels.
@@ -95,9 +94,8 @@ pub fn box_mean(values: &[f64], width: usize, radius: usize) -> Vec<f64> {
 /// The expectation of its square is what [`Noise`] estimates the square root of.
 pub fn relative_error(luminance: &[f64], reference: &[f64], width: usize) -> f64 {
     let brightness = brightness(reference, width);
-    let errors = luminance.iter().zip(reference).map(|(a, b)| (a - b) * (a - b));
-    let squares: Vec<f64> = errors.zip(&brightness).map(|(v, &d)| relative(v, d)).collect();
-    mean(&squares).sqrt()
+    let squares: Vec<f64> = luminance.iter().zip(reference).map(|(a, b)| (a - b) * (a - b)).collect();
+    mean(&relative(&squares, &brightness)).sqrt()
 }
 
 /// The mean of some values.
