@@ -6,18 +6,16 @@
 mod build;
 mod node;
 mod simd;
+mod stack;
 mod traverse;
 mod triangles;
 
 pub(crate) use node::LeafPrimitive;
 pub(crate) use traverse::{Level, Visitor};
 
-use build::{BuildPrimitive, MAX_DEPTH, Tree};
-use node::{Child, Kind, LANES, Node, TriangleBlock, WIDTH};
+use build::{BuildPrimitive, Tree};
+use node::{Child, Kind, Node, TriangleBlock};
 use tenfold_math::{Bounds3, Vec3};
-
-/// Entries of the traversal's stack: every node on a path leaves at most seven siblings behind.
-const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 2;
 
 /// What goes into a hierarchy.
 #[derive(Debug, Default)]
@@ -33,12 +31,10 @@ pub(crate) struct Parts {
 /// A hierarchy, immutable once built.
 #[derive(Debug)]
 pub(crate) struct Bvh {
+    /// The root first; none where there is nothing to hit.
     nodes: Vec<Node>,
     blocks: Vec<TriangleBlock>,
-    /// Whose the lanes of the blocks are.
-    ids: Vec<[LeafPrimitive; LANES]>,
     shapes: Vec<LeafPrimitive>,
-    root: Child,
     bounds: Bounds3,
 }
 
@@ -56,15 +52,18 @@ impl Bvh {
         let mut bvh = Self {
             nodes: Vec::new(),
             blocks: Vec::new(),
-            ids: Vec::new(),
             shapes: shapes.iter().map(|(_, id)| *id).collect(),
-            root: Child::EMPTY,
             bounds: Bounds3::EMPTY,
         };
         if !primitives.is_empty() {
             let (bounds, tree) = build::build(&mut primitives);
             bvh.bounds = bounds;
-            bvh.root = bvh.lay_out(&tree, &primitives, &triangles);
+            // The first node is the root, also of a single leaf.
+            let tree = match tree {
+                Tree::Node(_) => tree,
+                Tree::Leaf(_) => Tree::Node(vec![(bounds, tree)]),
+            };
+            bvh.lay_out(&tree, &primitives, &triangles);
         }
         bvh
     }
@@ -92,18 +91,12 @@ impl Bvh {
                     return Child::new(leaf[0].kind, leaf[0].index as usize);
                 }
                 let at = self.blocks.len();
-                let (mut block, mut ids) = (TriangleBlock::EMPTY, [LeafPrimitive::NONE; LANES]);
+                let mut block = TriangleBlock::EMPTY;
                 for (lane, primitive) in leaf.iter().enumerate() {
                     let (positions, id) = &triangles[primitive.index as usize];
-                    for (axis, row) in block.axes.iter_mut().enumerate() {
-                        for (vertex, lanes) in row.iter_mut().enumerate() {
-                            lanes[lane] = positions[vertex][axis];
-                        }
-                    }
-                    ids[lane] = *id;
+                    block.set(lane, positions, *id);
                 }
                 self.blocks.push(block);
-                self.ids.push(ids);
                 Child::new(Kind::Triangles, at)
             }
         }
@@ -121,10 +114,7 @@ impl Bvh {
 
     /// Memory in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..])
-            + size_of_val(&self.blocks[..])
-            + size_of_val(&self.ids[..])
-            + size_of_val(&self.shapes[..])
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.shapes[..])
     }
 }
 

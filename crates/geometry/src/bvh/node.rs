@@ -1,6 +1,6 @@
 //! What a hierarchy is stored as.
 
-use tenfold_math::Bounds3;
+use tenfold_math::{Bounds3, Vec3};
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
@@ -40,8 +40,8 @@ impl Node {
     }
 
     #[inline(always)]
-    pub(super) fn child(&self, slot: usize) -> Child {
-        Child(self.rows[6][slot & 7])
+    pub(super) fn children(&self) -> &[u32; WIDTH] {
+        &self.rows[6]
     }
 }
 
@@ -94,18 +94,35 @@ impl Child {
 }
 
 /// Triangles of a block.
-pub(super) const LANES: usize = 4;
+pub(super) const LANES: usize = 8;
 
-/// A block of triangles, side by side; unused lanes hold NaN, which no ray hits.
+/// A block of triangles, side by side, in six cache lines; unused lanes hold NaN, which no ray hits.
 #[derive(Copy, Clone, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct TriangleBlock {
     /// Positions by axis, vertex, lane.
     pub(super) axes: [[[f32; LANES]; 3]; 3],
+    /// Whose the lanes are.
+    pub(super) ids: [LeafPrimitive; LANES],
+    /// Keeps every byte initialised.
+    padding: [u32; 8],
 }
 
 impl TriangleBlock {
-    pub(super) const EMPTY: Self = Self { axes: [[[f32::NAN; LANES]; 3]; 3] };
+    pub(super) const EMPTY: Self = Self {
+        axes: [[[f32::NAN; LANES]; 3]; 3],
+        ids: [LeafPrimitive { geometry: 0, index: 0 }; LANES],
+        padding: [0; 8],
+    };
+
+    pub(super) fn set(&mut self, lane: usize, positions: &[Vec3; 3], id: LeafPrimitive) {
+        for (axis, row) in self.axes.iter_mut().enumerate() {
+            for (vertex, lanes) in row.iter_mut().enumerate() {
+                lanes[lane] = positions[vertex][axis];
+            }
+        }
+        self.ids[lane] = id;
+    }
 }
 
 /// A primitive in a leaf: its geometry with the mask bit, and its index there.
@@ -116,8 +133,6 @@ pub(crate) struct LeafPrimitive {
 }
 
 impl LeafPrimitive {
-    pub(crate) const NONE: Self = Self { geometry: 0, index: 0 };
-
     pub(crate) fn new(geometry: u32, index: u32, masked: bool) -> Self {
         Self { geometry: geometry | u32::from(masked) << 31, index }
     }

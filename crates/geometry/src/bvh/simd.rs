@@ -1,14 +1,14 @@
 //! Vectors of floats, portable and by AVX2. Both round alike (no fused multiply-add), so results are the same bits.
 
-use super::node::LANES;
+use super::{node::WIDTH, stack::Stack};
 
-/// A vector of `N` floats.
+/// A vector of eight floats.
 ///
 /// `min` and `max` return the second argument where either is NaN, as the instructions of x86 do.
-pub(super) trait Vector<const N: usize>: Copy {
-    fn load(a: &[f32; N]) -> Self;
+pub(super) trait Vector: Copy {
+    fn load(a: &[f32; WIDTH]) -> Self;
     fn splat(x: f32) -> Self;
-    fn to_array(self) -> [f32; N];
+    fn to_array(self) -> [f32; WIDTH];
     fn add(self, b: Self) -> Self;
     fn sub(self, b: Self) -> Self;
     fn mul(self, b: Self) -> Self;
@@ -26,25 +26,74 @@ pub(super) trait Vector<const N: usize>: Copy {
 
 /// Which implementation of [`Vector`] to use.
 pub(super) trait Simd {
-    /// For the boxes of a node.
-    type F8: Vector<8>;
-    /// For the triangles of a block.
-    type Triangles: Vector<LANES>;
+    /// For the boxes of a node and the triangles of a block.
+    type F8: Vector;
+
+    /// Takes the children whose bits are set in `mask`, of which there must be two or more: returns the one nearest by `near` and puts the
+    /// others on the stack, the farthest first. `near` is nowhere negative.
+    fn push_sorted(stack: &mut Stack, mask: u32, near: Self::F8, children: &[u32; WIDTH]) -> u32;
+
+    /// Puts the children whose bits are set in `mask` on the stack, those of later slots first, at no distance.
+    fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]);
 }
+
+/// The bits that are set in an index, the highest first: for [`Simd::push`].
+static SLOTS: [[u8; WIDTH]; 1 << WIDTH] = {
+    let mut table = [[0; WIDTH]; 1 << WIDTH];
+    let mut mask = 0;
+    while mask < 1 << WIDTH {
+        let (mut n, mut slot) = (0, WIDTH);
+        while slot > 0 {
+            slot -= 1;
+            if mask >> slot & 1 != 0 {
+                table[mask][n] = slot as u8;
+                n += 1;
+            }
+        }
+        mask += 1;
+    }
+    table
+};
 
 /// Plain arrays, for every machine.
 pub(super) struct Portable;
 
 impl Simd for Portable {
-    type F8 = Array<8>;
-    type Triangles = Array<LANES>;
+    type F8 = Array;
+
+    fn push_sorted(stack: &mut Stack, mut mask: u32, near: Array, children: &[u32; WIDTH]) -> u32 {
+        let mut keys = [0; WIDTH];
+        let mut n = 0;
+        while mask != 0 {
+            let slot = mask.trailing_zeros();
+            mask &= mask - 1;
+            let key = Stack::key(near.0[slot as usize], slot);
+            let mut at = n;
+            while at > 0 && keys[at - 1] < key {
+                keys[at] = keys[at - 1];
+                at -= 1;
+            }
+            keys[at] = key;
+            n += 1;
+        }
+        let child = |key: u32| children[key as usize % WIDTH];
+        keys[..n - 1].iter().for_each(|&key| stack.push(key, child(key)));
+        child(keys[n - 1])
+    }
+
+    fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
+        let slots = &SLOTS[mask as usize % SLOTS.len()];
+        slots[..mask.count_ones() as usize]
+            .iter()
+            .for_each(|&slot| stack.push(0, children[usize::from(slot) % WIDTH]));
+    }
 }
 
 /// A vector as a plain array.
 #[derive(Copy, Clone)]
-pub(super) struct Array<const N: usize>([f32; N]);
+pub(super) struct Array([f32; WIDTH]);
 
-impl<const N: usize> Array<N> {
+impl Array {
     #[inline(always)]
     fn zip(self, b: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], b.0[i])))
@@ -52,21 +101,21 @@ impl<const N: usize> Array<N> {
 
     #[inline(always)]
     fn bits(self, b: Self, f: impl Fn(f32, f32) -> bool) -> u32 {
-        (0..N).fold(0, |bits, i| bits | u32::from(f(self.0[i], b.0[i])) << i)
+        (0..WIDTH).fold(0, |bits, i| bits | u32::from(f(self.0[i], b.0[i])) << i)
     }
 }
 
-impl<const N: usize> Vector<N> for Array<N> {
+impl Vector for Array {
     #[inline(always)]
-    fn load(a: &[f32; N]) -> Self {
+    fn load(a: &[f32; WIDTH]) -> Self {
         Self(*a)
     }
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        Self([x; N])
+        Self([x; WIDTH])
     }
     #[inline(always)]
-    fn to_array(self) -> [f32; N] {
+    fn to_array(self) -> [f32; WIDTH] {
         self.0
     }
     #[inline(always)]
@@ -116,7 +165,7 @@ pub(super) use avx2::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{Simd, Vector};
+    use super::{SLOTS, Simd, Stack, Vector, WIDTH};
     use std::arch::x86_64::*;
 
     /// AVX2. Its vectors are to be used only inside functions with that target feature.
@@ -124,109 +173,139 @@ mod avx2 {
 
     impl Simd for Avx2 {
         type F8 = Vec8;
-        type Triangles = Vec4;
+
+        #[inline(always)]
+        fn push_sorted(stack: &mut Stack, mask: u32, near: Vec8, children: &[u32; WIDTH]) -> u32 {
+            // SAFETY: the machine has AVX2, or this type is not used.
+            unsafe { push_sorted(stack, mask, near.0, children) }
+        }
+
+        #[inline(always)]
+        fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
+            // SAFETY: the machine has AVX2, or this type is not used.
+            unsafe { push(stack, mask, children) }
+        }
     }
 
-    #[derive(Copy, Clone)]
-    pub(in super::super) struct Vec4(__m128);
+    #[inline]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
+        let slots = &SLOTS[mask as usize % SLOTS.len()];
+        let [_, room] = stack.room();
+        // SAFETY: the arrays have the lengths of these vectors.
+        unsafe {
+            let slots = _mm256_cvtepu8_epi32(_mm_loadl_epi64(slots.as_ptr().cast()));
+            let row = _mm256_loadu_si256(children.as_ptr().cast());
+            _mm256_storeu_si256(room.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(row, slots));
+        }
+        stack.grow(mask.count_ones() as usize);
+    }
+
+    /// Sorts all lanes in descending order by a bitonic network (Batcher 1968), with 0 for those that are not in the mask. The nearest is
+    /// found apart, in fewer steps: the next node waits for it alone.
+    #[inline]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn push_sorted(stack: &mut Stack, mask: u32, near: __m256, children: &[u32; WIDTH]) -> u32 {
+        let slots = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        let within = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
+        // As `Stack::key`.
+        let distance = _mm256_and_si256(_mm256_castps_si256(near), _mm256_set1_epi32(!7));
+        let keys = _mm256_or_si256(distance, _mm256_or_si256(slots, _mm256_set1_epi32(i32::MIN)));
+        let nearest = {
+            let keys = _mm256_or_si256(keys, _mm256_xor_si256(within, _mm256_set1_epi32(-1)));
+            let m = _mm_min_epu32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys));
+            let m = _mm_min_epu32(m, _mm_shuffle_epi32::<0b01_00_11_10>(m));
+            let m = _mm_min_epu32(m, _mm_shuffle_epi32::<0b10_11_00_01>(m));
+            children[_mm_cvtsi128_si32(m) as usize % WIDTH]
+        };
+        let mut v = _mm256_and_si256(keys, within);
+        macro_rules! stage {
+            ($other:expr, $high:literal) => {
+                let other = $other;
+                v = _mm256_blend_epi32::<$high>(_mm256_max_epu32(v, other), _mm256_min_epu32(v, other));
+            };
+        }
+        // Lanes in pairs, against each other in fours, in pairs; then the same in eights.
+        stage!(_mm256_shuffle_epi32::<0b10_11_00_01>(v), 0b1010_1010);
+        stage!(_mm256_shuffle_epi32::<0b00_01_10_11>(v), 0b1100_1100);
+        stage!(_mm256_shuffle_epi32::<0b10_11_00_01>(v), 0b1010_1010);
+        stage!(_mm256_permutevar8x32_epi32(v, _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0)), 0b1111_0000);
+        stage!(_mm256_shuffle_epi32::<0b01_00_11_10>(v), 0b1100_1100);
+        stage!(_mm256_shuffle_epi32::<0b10_11_00_01>(v), 0b1010_1010);
+        // SAFETY: the array has the full length.
+        let row = unsafe { _mm256_loadu_si256(children.as_ptr().cast()) };
+        // Of each index the lowest three bits count: the slot.
+        let sorted = _mm256_permutevar8x32_epi32(row, v);
+        let [keys, children] = stack.room();
+        // SAFETY: both have the length of a vector.
+        unsafe {
+            _mm256_storeu_si256(keys.as_mut_ptr().cast(), v);
+            _mm256_storeu_si256(children.as_mut_ptr().cast(), sorted);
+        }
+        stack.grow(mask.count_ones() as usize - 1);
+        nearest
+    }
+
     #[derive(Copy, Clone)]
     pub(in super::super) struct Vec8(__m256);
 
-    /// Implements [`Vector`] by intrinsics.
-    macro_rules! vector {
-        ($name:ident, $n:literal, $load:ident, $store:ident, $set:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
-         $min:ident, $max:ident, $andnot:ident, $cmp:ident, $movemask:ident) => {
-            // SAFETY (of every block): the machine has AVX2, or this type is not used (see `Avx2`); the pointers come
-            // from references to arrays of the full length.
-            impl Vector<$n> for $name {
-                #[inline(always)]
-                fn load(a: &[f32; $n]) -> Self {
-                    Self(unsafe { $load(a.as_ptr()) })
-                }
-                #[inline(always)]
-                fn splat(x: f32) -> Self {
-                    Self(unsafe { $set(x) })
-                }
-                #[inline(always)]
-                fn to_array(self) -> [f32; $n] {
-                    let mut a = [0.0; $n];
-                    unsafe { $store(a.as_mut_ptr(), self.0) };
-                    a
-                }
-                #[inline(always)]
-                fn add(self, b: Self) -> Self {
-                    Self(unsafe { $add(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn sub(self, b: Self) -> Self {
-                    Self(unsafe { $sub(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn mul(self, b: Self) -> Self {
-                    Self(unsafe { $mul(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn div(self, b: Self) -> Self {
-                    Self(unsafe { $div(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn min(self, b: Self) -> Self {
-                    Self(unsafe { $min(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn max(self, b: Self) -> Self {
-                    Self(unsafe { $max(self.0, b.0) })
-                }
-                #[inline(always)]
-                fn abs(self) -> Self {
-                    Self(unsafe { $andnot($set(-0.0), self.0) })
-                }
-                #[inline(always)]
-                fn le(self, b: Self) -> u32 {
-                    unsafe { $movemask($cmp::<_CMP_LE_OQ>(self.0, b.0)) as u32 }
-                }
-                #[inline(always)]
-                fn lt(self, b: Self) -> u32 {
-                    unsafe { $movemask($cmp::<_CMP_LT_OQ>(self.0, b.0)) as u32 }
-                }
-                #[inline(always)]
-                fn eq(self, b: Self) -> u32 {
-                    unsafe { $movemask($cmp::<_CMP_EQ_OQ>(self.0, b.0)) as u32 }
-                }
-            }
-        };
+    // SAFETY (of every block): the machine has AVX2, or this type is not used (see `Avx2`); the pointers come
+    // from references to arrays of the full length.
+    impl Vector for Vec8 {
+        #[inline(always)]
+        fn load(a: &[f32; WIDTH]) -> Self {
+            Self(unsafe { _mm256_loadu_ps(a.as_ptr()) })
+        }
+        #[inline(always)]
+        fn splat(x: f32) -> Self {
+            Self(unsafe { _mm256_set1_ps(x) })
+        }
+        #[inline(always)]
+        fn to_array(self) -> [f32; WIDTH] {
+            let mut a = [0.0; WIDTH];
+            unsafe { _mm256_storeu_ps(a.as_mut_ptr(), self.0) };
+            a
+        }
+        #[inline(always)]
+        fn add(self, b: Self) -> Self {
+            Self(unsafe { _mm256_add_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn sub(self, b: Self) -> Self {
+            Self(unsafe { _mm256_sub_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn mul(self, b: Self) -> Self {
+            Self(unsafe { _mm256_mul_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn div(self, b: Self) -> Self {
+            Self(unsafe { _mm256_div_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn min(self, b: Self) -> Self {
+            Self(unsafe { _mm256_min_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn max(self, b: Self) -> Self {
+            Self(unsafe { _mm256_max_ps(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn le(self, b: Self) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, b.0)) as u32 }
+        }
+        #[inline(always)]
+        fn lt(self, b: Self) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, b.0)) as u32 }
+        }
+        #[inline(always)]
+        fn eq(self, b: Self) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, b.0)) as u32 }
+        }
     }
-
-    vector!(
-        Vec4,
-        4,
-        _mm_loadu_ps,
-        _mm_storeu_ps,
-        _mm_set1_ps,
-        _mm_add_ps,
-        _mm_sub_ps,
-        _mm_mul_ps,
-        _mm_div_ps,
-        _mm_min_ps,
-        _mm_max_ps,
-        _mm_andnot_ps,
-        _mm_cmp_ps,
-        _mm_movemask_ps
-    );
-    vector!(
-        Vec8,
-        8,
-        _mm256_loadu_ps,
-        _mm256_storeu_ps,
-        _mm256_set1_ps,
-        _mm256_add_ps,
-        _mm256_sub_ps,
-        _mm256_mul_ps,
-        _mm256_div_ps,
-        _mm256_min_ps,
-        _mm256_max_ps,
-        _mm256_andnot_ps,
-        _mm256_cmp_ps,
-        _mm256_movemask_ps
-    );
 }

@@ -1,9 +1,10 @@
 //! Traversal: nearest boxes first, with a stack of fixed size.
 
 use super::{
-    Bvh, STACK,
-    node::{Child, Kind, LeafPrimitive, Node, WIDTH},
+    Bvh,
+    node::{Child, Kind, LANES, LeafPrimitive, Node, TriangleBlock, WIDTH},
     simd::{Portable, Simd, Vector},
+    stack::Stack,
     triangles::Shear,
 };
 use crate::{ShapeHit, shape::RayShear};
@@ -14,12 +15,12 @@ use tenfold_math::{Ray, gamma};
 pub(crate) enum Level {
     /// What every machine has.
     Portable,
-    /// AVX2. Only [`Level::detect`] makes it.
+    /// AVX2, and the bit counting of the same processors. Only [`Level::detect`] makes it.
     #[cfg(target_arch = "x86_64")]
     Avx2(Avx2Token),
 }
 
-/// Proof that this machine has AVX2.
+/// Proof that this machine has AVX2, and what bit counting came with it.
 #[cfg(target_arch = "x86_64")]
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Avx2Token(());
@@ -28,7 +29,8 @@ impl Level {
     /// The best that this machine has.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
+        use std::arch::is_x86_feature_detected as has;
+        if has!("avx2") && has!("bmi1") && has!("lzcnt") && has!("popcnt") {
             return Self::Avx2(Avx2Token(()));
         }
         Self::Portable
@@ -37,13 +39,13 @@ impl Level {
 
 /// What happens at the leaves. Distances are limits that only ever shrink.
 pub(crate) trait Visitor {
-    /// Whether the traversal may end at the first hit.
+    /// Whether the traversal may end at the first hit: the order does not matter then.
     const ANY: bool;
 
-    /// How far the ray still goes.
+    /// How far the ray still goes, including that distance itself; above 0.
     fn t_max(&self) -> f32;
 
-    /// A triangle is hit before [`Visitor::t_max`]. Returns whether the traversal is over.
+    /// A triangle is hit not beyond [`Visitor::t_max`]. Returns whether the traversal is over.
     fn triangle(&mut self, id: LeafPrimitive, hit: ShapeHit) -> bool;
 
     /// The ray comes to a primitive that is not a triangle. Returns whether the traversal is over.
@@ -57,87 +59,47 @@ pub(crate) trait Visitor {
 struct Slabs<V> {
     origin: [V; 3],
     inverse: [V; 3],
+    /// The inverse for the planes where the ray leaves.
+    inverse_far: [V; 3],
     /// The node's rows with the planes that the ray meets first and last on each axis.
     near: [usize; 3],
     far: [usize; 3],
 }
 
-impl<V: Vector<WIDTH>> Slabs<V> {
+/// Room for the rounding of the products that give distances to planes (Ize 2013) and of the triangle test (see `padded`): boxes seem longer
+/// by this factor, and so does the way that the ray may go. So no rounding decides which hits are found.
+const LONGER: f32 = 1.0 + 2.0 * gamma(8);
+
+impl<V: Vector> Slabs<V> {
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
         let d = ray.direction;
         // A ray along a slab gets a tiny slope instead of an infinite inverse, whose product with 0 would be NaN.
         let tiny = 1e-18 * d.abs().max_element();
         let inverse = |d: f32| 1.0 / if d.abs() < tiny { tiny.copysign(d) } else { d };
-        let near = |axis: usize| 2 * axis + usize::from(d[axis].is_sign_negative());
-        let near = [near(0), near(1), near(2)];
+        let [x, y, z] = [inverse(d.x), inverse(d.y), inverse(d.z)];
+        let near = |axis: usize, d: f32| 2 * axis + (d.to_bits() >> 31) as usize;
+        let near = [near(0, d.x), near(1, d.y), near(2, d.z)];
         Self {
             origin: [V::splat(ray.origin.x), V::splat(ray.origin.y), V::splat(ray.origin.z)],
-            inverse: [V::splat(inverse(d.x)), V::splat(inverse(d.y)), V::splat(inverse(d.z))],
+            inverse: [V::splat(x), V::splat(y), V::splat(z)],
+            inverse_far: [V::splat(x * LONGER), V::splat(y * LONGER), V::splat(z * LONGER)],
             near,
-            far: near.map(|row| row ^ 1),
+            far: [near[0] ^ 1, near[1] ^ 1, near[2] ^ 1],
         }
     }
 
     /// Which children's boxes the ray meets before `t_max`, and where it enters them.
     #[inline(always)]
-    fn intersect(&self, node: &Node, t_max: f32) -> (u32, [f32; WIDTH]) {
-        let plane = |rows: [usize; 3], axis: usize| {
-            V::load(node.row(rows[axis])).sub(self.origin[axis]).mul(self.inverse[axis])
-        };
-        let near = plane(self.near, 0).max(plane(self.near, 1)).max(plane(self.near, 2)).max(V::splat(0.0));
-        let far = plane(self.far, 0).min(plane(self.far, 1)).min(plane(self.far, 2));
-        // Room for the rounding of these products (Ize 2013) and of the triangle test (see `padded`).
-        let far = far.mul(V::splat(1.0 + 2.0 * gamma(8))).min(V::splat(t_max));
-        (near.le(far), near.to_array())
-    }
-}
-
-/// Children that wait: the distance to the box above the reference, so that integers sort by distance.
-struct Stack {
-    entries: [u64; STACK],
-    height: usize,
-}
-
-impl Stack {
-    /// Puts all children in the mask but the nearest on the stack, the nearest on top, and returns the nearest. There
-    /// must be one. For any hit at all, their order does not matter.
-    #[inline(always)]
-    fn push_children(&mut self, node: &Node, (mut mask, t): (u32, [f32; WIDTH]), any: bool) -> Child {
-        let mut next = || {
-            let slot = mask.trailing_zeros() as usize & (WIDTH - 1);
-            mask &= mask.wrapping_sub(1);
-            (u64::from(t[slot].to_bits()) << 32 | u64::from(node.child(slot).0), mask)
-        };
-        let (mut nearest, mut left) = next();
-        let base = self.height;
-        while left != 0 {
-            let (other, rest) = next();
-            left = rest;
-            let (low, high) = if other < nearest { (other, nearest) } else { (nearest, other) };
-            nearest = low;
-            let mut at = self.height;
-            while !any && at > base && self.entries[at - 1] < high {
-                self.entries[at] = self.entries[at - 1];
-                at -= 1;
-            }
-            self.entries[at] = high;
-            self.height += 1;
-        }
-        Child(nearest as u32)
-    }
-
-    /// The next child that is nearer than `t_max`.
-    #[inline(always)]
-    fn pop(&mut self, t_max: f32) -> Option<Child> {
-        while self.height > 0 {
-            self.height -= 1;
-            let top = self.entries[self.height];
-            if f32::from_bits((top >> 32) as u32) < t_max {
-                return Some(Child(top as u32));
-            }
-        }
-        None
+    fn intersect(&self, node: &Node, t_max: f32) -> (u32, V) {
+        let row = |row: usize, axis: usize| V::load(node.row(row)).sub(self.origin[axis]);
+        let [x, y, z] = self.inverse;
+        let near = row(self.near[0], 0).mul(x).max(row(self.near[1], 1).mul(y));
+        let near = near.max(row(self.near[2], 2).mul(z).max(V::splat(0.0)));
+        let [x, y, z] = self.inverse_far;
+        let far = row(self.far[0], 0).mul(x).min(row(self.far[1], 1).mul(y));
+        let far = far.min(row(self.far[2], 2).mul(z).min(V::splat(t_max * LONGER)));
+        (near.le(far), near)
     }
 }
 
@@ -155,73 +117,71 @@ impl Bvh {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
     fn traverse_avx2<W: Visitor>(&self, ray: &Ray, visitor: &mut W) -> bool {
         self.traverse_with::<super::simd::Avx2, W>(ray, visitor)
     }
 
     #[inline(always)]
     fn traverse_with<S: Simd, W: Visitor>(&self, ray: &Ray, visitor: &mut W) -> bool {
-        if self.root == Child::EMPTY {
-            return false;
-        }
+        let Some(root) = self.nodes.first() else { return false };
         let slabs = Slabs::<S::F8>::new(ray);
+        let (mut mask, mut near) = slabs.intersect(root, visitor.t_max());
         // Many rays miss everything: they should not pay for what follows.
-        let first = match self.root.is_node() {
-            true => slabs.intersect(&self.nodes[self.root.index()], visitor.t_max()),
-            false => (1, [0.0; WIDTH]),
-        };
-        if first.0 == 0 {
+        if mask == 0 {
             return false;
         }
-        let shear = Shear::<S::Triangles>::new(RayShear::new(ray));
-        let mut stack = Stack { entries: [0; STACK], height: 0 };
-        let mut child = match self.root.is_node() {
-            true => stack.push_children(&self.nodes[self.root.index()], first, W::ANY),
-            false => self.root,
+        let shear = Shear::<S::F8>::new(RayShear::new(ray));
+        let mut stack = Stack::new();
+        let pop = |stack: &mut Stack, visitor: &W| match W::ANY {
+            true => stack.pop_any(),
+            false => stack.pop(visitor.t_max()),
         };
+        let mut node = root;
         loop {
-            while child.is_node() {
-                let node = &self.nodes[child.index()];
-                let hits = slabs.intersect(node, visitor.t_max());
-                if hits.0 == 0 {
-                    child = Child::EMPTY;
-                    break;
-                }
-                child = stack.push_children(node, hits, W::ANY);
-            }
-            if child != Child::EMPTY {
+            let mut child = if mask == 0 {
+                pop(&mut stack, visitor)
+            } else if W::ANY {
+                S::push(&mut stack, mask & (mask - 1), node.children());
+                Child(node.children()[mask.trailing_zeros() as usize % WIDTH])
+            } else if mask & (mask - 1) == 0 {
+                Child(node.children()[mask.trailing_zeros() as usize % WIDTH])
+            } else if mask.count_ones() == 2 {
+                Child(stack.push_farther(mask, &near.to_array(), node.children()))
+            } else {
+                Child(S::push_sorted(&mut stack, mask, near, node.children()))
+            };
+            while !child.is_node() {
                 let over = match child.kind() {
-                    Kind::Node => false,
-                    Kind::Triangles => self.visit_triangles(&shear, child.index(), visitor),
+                    Kind::Triangles => Self::visit_triangles(&shear, &self.blocks[child.index()], visitor),
                     Kind::Shape => visitor.shape(self.shapes[child.index()]),
+                    Kind::Placement if child == Child::EMPTY => return false,
                     Kind::Placement => visitor.placement(child.index()),
+                    Kind::Node => false,
                 };
                 if over {
                     return true;
                 }
+                child = pop(&mut stack, visitor);
             }
-            child = match stack.pop(visitor.t_max()) {
-                Some(child) => child,
-                None => return false,
-            };
+            node = &self.nodes[child.index()];
+            (mask, near) = slabs.intersect(node, visitor.t_max());
         }
     }
 
     #[inline(always)]
-    fn visit_triangles<V: Vector<{ super::LANES }>>(
-        &self,
+    fn visit_triangles<V: Vector>(
         shear: &Shear<V>,
-        block: usize,
+        block: &TriangleBlock,
         visitor: &mut impl Visitor,
     ) -> bool {
-        let Some(hits) = shear.intersect(&self.blocks[block], visitor.t_max()) else { return false };
+        let Some(hits) = shear.intersect(block, visitor.t_max()) else { return false };
         let mut lanes = hits.lanes;
         while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize & (super::LANES - 1);
+            let lane = lanes.trailing_zeros() as usize % LANES;
             lanes &= lanes - 1;
             let hit = ShapeHit { t: hits.t[lane], u: hits.u[lane], v: hits.v[lane] };
-            if hit.t < visitor.t_max() && visitor.triangle(self.ids[block][lane], hit) {
+            if hit.t <= visitor.t_max() && visitor.triangle(block.ids[lane], hit) {
                 return true;
             }
         }

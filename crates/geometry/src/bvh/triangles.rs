@@ -24,15 +24,19 @@ pub(super) struct BlockHits {
     pub(super) v: [f32; LANES],
 }
 
-impl<V: Vector<LANES>> Shear<V> {
+impl<V: Vector> Shear<V> {
     #[inline(always)]
     pub(super) fn new(scalar: RayShear) -> Self {
-        let origin = scalar.axes.map(|axis| V::splat(scalar.origin[axis]));
+        let o = scalar.permuted_origin();
         let s = scalar.shear;
-        Self { scalar, origin, shear: [V::splat(s.x), V::splat(s.y), V::splat(s.z)] }
+        Self {
+            scalar,
+            origin: [V::splat(o.x), V::splat(o.y), V::splat(o.z)],
+            shear: [V::splat(s.x), V::splat(s.y), V::splat(s.z)],
+        }
     }
 
-    /// The triangles hit with `t_error < t < t_max`.
+    /// The triangles hit with `t_error < t <= t_max`.
     #[inline(always)]
     pub(super) fn intersect(&self, block: &TriangleBlock, t_max: f32) -> Option<BlockHits> {
         let [kx, ky, kz] = self.scalar.axes;
@@ -52,10 +56,10 @@ impl<V: Vector<LANES>> Shear<V> {
         }
         let det = e[0].add(e[1]).add(e[2]);
         let inv_det = V::splat(1.0).div(det);
-        let tz = z.map(|z| z.mul(sz));
+        let tz = from_fn(|i| z[i].mul(sz));
         let t = e[0].mul(tz[0]).add(e[1].mul(tz[1])).add(e[2].mul(tz[2])).mul(inv_det);
         let flat = inside & det.eq(zero);
-        let lanes = inside & !flat & in_front(t, [x, y, z], tz, inv_det) & t.lt(V::splat(t_max));
+        let lanes = inside & !flat & in_front(t, [x, y, z], tz, inv_det) & t.le(V::splat(t_max));
         if lanes | flat == 0 {
             return None;
         }
@@ -82,7 +86,7 @@ impl<V: Vector<LANES>> Shear<V> {
                     block.axes[2][vertex][lane],
                 )
             });
-            if let Some(hit) = self.scalar.intersect(p, t_max) {
+            if let Some(hit) = self.scalar.intersect(p, t_max.next_up()) {
                 hits.lanes |= 1 << lane;
                 (hits.t[lane], hits.u[lane], hits.v[lane]) = (hit.t, hit.u, hit.v);
             }
@@ -95,14 +99,19 @@ fn from_fn<V>(f: impl Fn(usize) -> V) -> [V; 3] {
     [f(0), f(1), f(2)]
 }
 
+#[inline(always)]
+fn max<V: Vector>(a: [V; 3]) -> V {
+    a[0].abs().max(a[1].abs()).max(a[2].abs())
+}
+
 /// As `is_in_front` of the triangle shape.
 #[inline(always)]
-fn in_front<V: Vector<LANES>>(t: V, coordinates: [[V; 3]; 3], z: [V; 3], inv_det: V) -> u32 {
-    let max = |a: [V; 3]| a[0].abs().max(a[1].abs()).max(a[2].abs());
+fn in_front<V: Vector>(t: V, coordinates: [[V; 3]; 3], z: [V; 3], inv_det: V) -> u32 {
     let c = |x: f32| V::splat(x);
     let delta_t = c(gamma(8)).mul(max(z));
     let nearest = z[0].min(z[1].min(z[2]));
-    let [max_x, max_y, max_z] = coordinates.map(max);
+    let [x, y, z_] = coordinates;
+    let (max_x, max_y, max_z) = (max(x), max(y), max(z_));
     let delta_x = c(gamma(5)).mul(max_x.add(max_z));
     let delta_y = c(gamma(5)).mul(max_y.add(max_z));
     let delta_e =

@@ -231,20 +231,22 @@ pub(crate) struct RayShear {
 }
 
 impl RayShear {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
         let d = ray.direction.abs();
-        let kz = if d.x > d.y && d.x > d.z {
-            0
-        } else if d.y > d.z {
-            1
-        } else {
-            2
-        };
-        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
-        let d = ray.direction;
-        let shear = Vec3::new(-d[kx] / d[kz], -d[ky] / d[kz], 1.0 / d[kz]);
-        Self { origin: ray.origin, axes: [kx, ky, kz], shear }
+        // Without branches: for rays in all directions they would go wrong as often as not.
+        let kz = usize::from(!((d.x > d.y) & (d.x > d.z))) * (2 - usize::from(d.y > d.z));
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]][kz & 3];
+        let d = ray.direction.to_array();
+        let [x, y, z] = [d[axes[0]], d[axes[1]], d[axes[2]]];
+        Self { origin: ray.origin, axes, shear: Vec3::new(-x / z, -y / z, 1.0 / z) }
+    }
+
+    /// The origin by its new axes.
+    #[inline(always)]
+    pub(crate) fn permuted_origin(&self) -> Vec3 {
+        let origin = self.origin.to_array();
+        Vec3::new(origin[self.axes[0]], origin[self.axes[1]], origin[self.axes[2]])
     }
 
     /// The triangle `p` against the ray. The vectorised test of the hierarchy does the same operations in the same order.

@@ -125,7 +125,7 @@ impl World {
         self.geometries[id.geometry.index()].shape.primitive(id.index as usize)
     }
 
-    /// The closest hit with `0 < t < t_max`, of those that `filter` accepts. The filter is asked about masked
+    /// The closest hit with `0 < t < t_max`, of those that `filter` accepts; of hits at the same distance that of the first primitive. The filter is asked about masked
     /// geometries only, and not only about the closest hits.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: impl Fn(&Candidate<'_>) -> bool) -> Option<Hit> {
@@ -145,7 +145,8 @@ impl World {
         filter: impl Fn(&Candidate<'_>) -> bool,
     ) -> Option<Hit> {
         // Rays that lead nowhere would visit everything in vain.
-        if !ray.origin.is_finite() || !ray.direction.is_finite() || ray.direction == Vec3::ZERO {
+        let leads_nowhere = !ray.direction.is_finite() || ray.direction == Vec3::ZERO || !(t_max > 0.0);
+        if leads_nowhere || !ray.origin.is_finite() {
             return None;
         }
         let state = State { best: None, t_max };

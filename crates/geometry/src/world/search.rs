@@ -5,7 +5,7 @@ use crate::{
     Candidate, Hit, InstanceId, PrimitiveId, ShapeHit,
     bvh::{LeafPrimitive, Visitor},
 };
-use tenfold_math::{Id, Ray};
+use tenfold_math::{Id, Ray, next_up};
 
 /// What was found so far.
 #[derive(Copy, Clone)]
@@ -33,12 +33,25 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Search<'_,
         Hit { t: hit.t, u: hit.u, v: hit.v, primitive, instance: self.instance }
     }
 
+    /// Whether a hit comes before the best one so far. Of hits at the same distance that of the first primitive and instance counts: it must not depend
+    /// on the way through the hierarchy.
+    #[inline(always)]
+    fn is_before(&self, id: LeafPrimitive, hit: ShapeHit) -> bool {
+        hit.t < self.state.t_max
+            || hit.t == self.state.t_max
+                && self.state.best.is_some_and(|best| {
+                    let found = self.hit(id, hit);
+                    (found.primitive, found.instance) < (best.primitive, best.instance)
+                })
+    }
+
     #[inline(always)]
     fn accepts(&self, id: LeafPrimitive, hit: ShapeHit) -> bool {
-        !id.is_masked() || {
-            let user = self.world.geometries[id.geometry()].user;
-            (self.filter)(&Candidate { world: self.world, ray: self.ray, hit: self.hit(id, hit), user })
-        }
+        self.is_before(id, hit)
+            && (!id.is_masked() || {
+                let user = self.world.geometries[id.geometry()].user;
+                (self.filter)(&Candidate { world: self.world, ray: self.ray, hit: self.hit(id, hit), user })
+            })
     }
 
     #[inline(always)]
@@ -66,7 +79,9 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor fo
 
     fn shape(&mut self, id: LeafPrimitive) -> bool {
         let primitive = self.world.geometries[id.geometry()].shape.primitive(id.index as usize);
-        let found = primitive.intersect(&self.local, self.state.t_max, |hit| self.accepts(id, hit));
+        // Shapes look for hits below the limit.
+        let limit = next_up(self.state.t_max);
+        let found = primitive.intersect(&self.local, limit, |hit| self.accepts(id, hit));
         match found {
             Some(hit) => {
                 self.take(id, hit);

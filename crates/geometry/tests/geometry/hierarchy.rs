@@ -209,3 +209,42 @@ fn masks_let_rays_through_where_they_say() {
         assert!(kind == "disk" || through > 10, "{kind}: {through}");
     }
 }
+
+#[test]
+fn of_hits_at_one_distance_that_of_the_first_primitive_counts() {
+    // A grid of triangles and a copy of it, in different orders: rays through corners and edges hit many at once.
+    let mut rng = Rng::new(13);
+    let n = 12u32;
+    let positions = (0..n * n).map(|i| Vec3::new((i % n) as f32, (i / n) as f32, 0.0)).collect::<Vec<_>>();
+    let mut faces: Vec<[u32; 3]> = (0..(n - 1) * (n - 1))
+        .flat_map(|i| {
+            let a = i % (n - 1) + i / (n - 1) * n;
+            [[a, a + 1, a + n], [a + 1, a + n + 1, a + n]]
+        })
+        .collect();
+    let mut geometries = Vec::new();
+    for user in 0..2 {
+        for i in (1..faces.len()).rev() {
+            faces.swap(i, rng.below(i + 1));
+        }
+        let parts = MeshParts {
+            positions: positions.clone(),
+            indices: faces.iter().flatten().copied().collect(),
+            ..MeshParts::default()
+        };
+        let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+        geometries.push(still(Shape::Triangles(Arc::new(mesh)), user));
+    }
+    let desc = WorldDesc { geometries, ..WorldDesc::default() };
+    let world = World::build(desc.clone()).unwrap();
+    for x in 0..4 * n {
+        for y in 0..4 * n {
+            let to = 0.25 * Vec3::new(x as f32, y as f32, 0.0);
+            for from in [to + Vec3::Z, Vec3::new(3.0, -2.0, 8.0)] {
+                let ray = Ray::new(from, to - from, 0.0);
+                let hit = world.intersect(&ray, f32::INFINITY, |_| true).map(|h| (h.t, h.primitive));
+                assert_eq!(hit, brute_force(&desc, &ray, f32::INFINITY), "{ray:?}");
+            }
+        }
+    }
+}
