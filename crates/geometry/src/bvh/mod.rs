@@ -4,29 +4,21 @@
 //! the business of the [`Visitor`].
 
 mod build;
+mod layout;
+mod memory;
 mod node;
 mod simd;
 mod stack;
 mod traverse;
 mod triangles;
 
+pub(crate) use build::{Reference, Target, padded};
+pub(crate) use memory::with_capacity;
 pub(crate) use node::LeafPrimitive;
 pub(crate) use traverse::{Level, Visitor};
 
-use build::{BuildPrimitive, Tree};
-use node::{Child, Kind, Node, TriangleBlock};
+use node::{Node, TriangleBlock};
 use tenfold_math::{Bounds3, Vec3};
-
-/// What goes into a hierarchy.
-#[derive(Debug, Default)]
-pub(crate) struct Parts {
-    /// Triangles, none of them degenerate, and their ids.
-    pub(crate) triangles: Vec<([Vec3; 3], LeafPrimitive)>,
-    /// Boxes of primitives of other kinds.
-    pub(crate) shapes: Vec<(Bounds3, LeafPrimitive)>,
-    /// Boxes of placements and their indices.
-    pub(crate) placements: Vec<(Bounds3, u32)>,
-}
 
 /// A hierarchy, immutable once built.
 #[derive(Debug)]
@@ -39,67 +31,23 @@ pub(crate) struct Bvh {
 }
 
 impl Bvh {
-    /// Builds. The result does not depend on the number of threads. There must be less than 2³⁰ parts in total.
-    pub(crate) fn build(parts: Parts) -> Self {
-        let Parts { triangles, shapes, placements } = parts;
-        let mut primitives = Vec::with_capacity(triangles.len() + shapes.len() + placements.len());
-        let mut push = |bounds: Bounds3, kind, index: usize| {
-            primitives.push(BuildPrimitive { bounds: padded(bounds), kind, index: index as u32 });
-        };
-        triangles.iter().enumerate().for_each(|(i, (p, _))| push(Bounds3::around(*p), Kind::Triangles, i));
-        shapes.iter().enumerate().for_each(|(i, (b, _))| push(*b, Kind::Shape, i));
-        placements.iter().for_each(|(b, i)| push(*b, Kind::Placement, *i as usize));
-        let mut bvh = Self {
-            nodes: Vec::new(),
-            blocks: Vec::new(),
-            shapes: shapes.iter().map(|(_, id)| *id).collect(),
-            bounds: Bounds3::EMPTY,
-        };
-        if !primitives.is_empty() {
-            let (bounds, tree) = build::build(&mut primitives);
-            bvh.bounds = bounds;
-            // The first node is the root, also of a single leaf.
-            let tree = match tree {
-                Tree::Node(_) => tree,
-                Tree::Leaf(_) => Tree::Node(vec![(bounds, tree)]),
+    /// A hierarchy over `references`; `positions` gives the corners of the triangles among them. The result does not depend on the number of threads.
+    /// There must be less than 2³⁰ references.
+    pub(crate) fn build(
+        mut references: Vec<Reference>,
+        positions: impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync,
+    ) -> Self {
+        if references.is_empty() {
+            return Self {
+                nodes: Vec::new(),
+                blocks: Vec::new(),
+                shapes: Vec::new(),
+                bounds: Bounds3::EMPTY,
             };
-            bvh.lay_out(&tree, &primitives, &triangles);
         }
-        bvh
-    }
-
-    /// Appends a tree, nodes before their children and depth first.
-    fn lay_out(
-        &mut self,
-        tree: &Tree,
-        primitives: &[BuildPrimitive],
-        triangles: &[([Vec3; 3], LeafPrimitive)],
-    ) -> Child {
-        match tree {
-            Tree::Node(children) => {
-                let at = self.nodes.len();
-                self.nodes.push(Node::EMPTY);
-                for (slot, (bounds, child)) in children.iter().enumerate() {
-                    let child = self.lay_out(child, primitives, triangles);
-                    self.nodes[at].set(slot, bounds, child);
-                }
-                Child::new(Kind::Node, at)
-            }
-            Tree::Leaf(range) => {
-                let leaf = &primitives[range.clone()];
-                if leaf[0].kind != Kind::Triangles {
-                    return Child::new(leaf[0].kind, leaf[0].index as usize);
-                }
-                let at = self.blocks.len();
-                let mut block = TriangleBlock::EMPTY;
-                for (lane, primitive) in leaf.iter().enumerate() {
-                    let (positions, id) = &triangles[primitive.index as usize];
-                    block.set(lane, positions, *id);
-                }
-                self.blocks.push(block);
-                Child::new(Kind::Triangles, at)
-            }
-        }
+        build::presplit(&mut references, &positions);
+        let (bounds, root) = build::build(&mut references);
+        layout::lay_out(&root, bounds, &references, &positions)
     }
 
     /// A box around everything.
@@ -115,21 +63,5 @@ impl Bvh {
     /// Memory in bytes.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.shapes[..])
-    }
-}
-
-/// A box grown so that the rounding of the triangle test cannot reach out of it.
-///
-/// The test shears vertices to the ray's axis: along each axis that errs by at most 5u of the distance travelled, which
-/// the slab test allows for, and by 4u of the distance from the vertex to the ray, here the size of the box and its
-/// slant (u = 2⁻²⁴).
-fn padded(b: Bounds3) -> Bounds3 {
-    let size = b.diagonal().max_element();
-    let by = size * 1e-6;
-    let outward = |x: f32| x + by + x.abs() * f32::EPSILON;
-    let inward = |x: f32| x - by - x.abs() * f32::EPSILON;
-    Bounds3 {
-        min: Vec3::new(inward(b.min.x), inward(b.min.y), inward(b.min.z)),
-        max: Vec3::new(outward(b.max.x), outward(b.max.y), outward(b.max.z)),
     }
 }

@@ -109,11 +109,8 @@ pub(super) struct TriangleBlock {
 }
 
 impl TriangleBlock {
-    pub(super) const EMPTY: Self = Self {
-        axes: [[[f32::NAN; LANES]; 3]; 3],
-        ids: [LeafPrimitive { geometry: 0, index: 0 }; LANES],
-        padding: [0; 8],
-    };
+    pub(super) const EMPTY: Self =
+        Self { axes: [[[f32::NAN; LANES]; 3]; 3], ids: [LeafPrimitive::NONE; LANES], padding: [0; 8] };
 
     pub(super) fn set(&mut self, lane: usize, positions: &[Vec3; 3], id: LeafPrimitive) {
         for (axis, row) in self.axes.iter_mut().enumerate() {
@@ -126,13 +123,15 @@ impl TriangleBlock {
 }
 
 /// A primitive in a leaf: its geometry with the mask bit, and its index there.
-#[derive(Copy, Clone, Debug)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct LeafPrimitive {
     geometry: u32,
     pub(crate) index: u32,
 }
 
 impl LeafPrimitive {
+    const NONE: Self = Self { geometry: 0, index: 0 };
+
     pub(crate) fn new(geometry: u32, index: u32, masked: bool) -> Self {
         Self { geometry: geometry | u32::from(masked) << 31, index }
     }
@@ -145,5 +144,15 @@ impl LeafPrimitive {
     #[inline(always)]
     pub(crate) fn is_masked(self) -> bool {
         self.geometry >> 31 != 0
+    }
+
+    /// The geometry, below 2³⁰, with the mask in the highest bit, and the index.
+    pub(super) fn words(self) -> [u32; 2] {
+        [self.geometry, self.index]
+    }
+
+    /// What [`LeafPrimitive::words`] gave.
+    pub(super) fn from_words([geometry, index]: [u32; 2]) -> Self {
+        Self { geometry, index }
     }
 }

@@ -3,7 +3,7 @@
 use super::{Geometry, WorldDesc, WorldError, WorldStats};
 use crate::{
     Shape,
-    bvh::{Bvh, LeafPrimitive, Parts},
+    bvh::{Bvh, LeafPrimitive, Reference, Target, padded, with_capacity},
     mesh::is_degenerate,
 };
 use rayon::prelude::*;
@@ -111,7 +111,7 @@ impl Hierarchies {
             }
         }
         let built: Vec<(Bvh, usize)> =
-            members.par_iter().map(|members| build_still(&desc.geometries, members, Vec::new())).collect();
+            members.par_iter().map(|members| build_still(&desc.geometries, members, &[])).collect();
 
         let mut placements = Vec::new();
         for (hierarchy, motion) in moving {
@@ -129,7 +129,7 @@ impl Hierarchies {
             .map(|(i, p)| (p.bounds(&built[p.hierarchy as usize].0.bounds(), desc.shutter), i as u32))
             .filter(|(b, _)| !b.is_empty())
             .collect();
-        let (top, mut degenerate) = build_still(&desc.geometries, &top_members, boxes);
+        let (top, mut degenerate) = build_still(&desc.geometries, &top_members, &boxes);
         degenerate += built.iter().map(|(_, degenerate)| degenerate).sum::<usize>();
         let lower: Vec<Bvh> = built.into_iter().map(|(bvh, _)| bvh).collect();
         let all = || lower.iter().chain([&top]);
@@ -145,27 +145,39 @@ impl Hierarchies {
 }
 
 /// A hierarchy over some geometries as they are, and placements; also counts the degenerate triangles left out.
-fn build_still(geometries: &[Geometry], members: &[usize], placements: Vec<(Bounds3, u32)>) -> (Bvh, usize) {
-    let mut parts = Parts { placements, ..Parts::default() };
+fn build_still(geometries: &[Geometry], members: &[usize], placements: &[(Bounds3, u32)]) -> (Bvh, usize) {
+    let corners = |id: LeafPrimitive| match &geometries[id.geometry()].shape {
+        Shape::Triangles(mesh) => mesh.positions(id.index as usize),
+        _ => [Vec3::ZERO; 3],
+    };
+    let reference =
+        |bounds: Bounds3, target| Reference::new(padded(bounds, bounds.diagonal().max_element()), target);
+    let count = members.iter().map(|&i| geometries[i].shape.len()).sum::<usize>() + placements.len();
+    let mut references = with_capacity(count);
+    references.extend(placements.iter().map(|(bounds, index)| reference(*bounds, Target::Placement(*index))));
     let mut degenerate = 0;
     for &i in members {
         let Geometry { shape, masked, .. } = &geometries[i];
         let id = |index: usize| LeafPrimitive::new(i as u32, index as u32, *masked);
         match shape {
             Shape::Triangles(mesh) => {
-                parts.triangles.reserve(mesh.len());
-                for index in 0..mesh.len() {
-                    let positions = mesh.positions(index);
-                    if is_degenerate(positions) {
-                        degenerate += 1;
-                    } else {
-                        parts.triangles.push((positions, id(index)));
-                    }
+                let areas = || (0..mesh.len()).into_par_iter().filter(|&i| !is_degenerate(mesh.positions(i)));
+                let bounded = |index: usize| {
+                    reference(Bounds3::around(mesh.positions(index)), Target::Triangle(id(index)))
+                };
+                let sound = areas().count();
+                degenerate += mesh.len() - sound;
+                if sound == mesh.len() {
+                    references.par_extend((0..mesh.len()).into_par_iter().map(bounded));
+                } else {
+                    references.par_extend(areas().map(bounded));
                 }
             }
             // Triangles alone have leaves of their own kind.
-            _ => parts.shapes.extend((0..shape.len()).map(|i| (shape.primitive(i).bounds(), id(i)))),
+            _ => references.extend(
+                (0..shape.len()).map(|i| reference(shape.primitive(i).bounds(), Target::Shape(id(i)))),
+            ),
         }
     }
-    (Bvh::build(parts), degenerate)
+    (Bvh::build(references, corners), degenerate)
 }

@@ -1,0 +1,152 @@
+//! Cutting long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
+
+use super::reference::{Reference, Target, padded};
+use crate::bvh::node::LeafPrimitive;
+use rayon::prelude::*;
+use tenfold_math::{Bounds3, Vec3, ops};
+
+/// At most this share of the triangles' number is added in parts.
+const EXTRA: f32 = 0.25;
+/// A triangle whose priority is this many times the mean is cut once: meshes of alike triangles stay whole.
+const OUTSTANDING: f32 = 2.0;
+/// Cuts of one triangle.
+const MOST: f32 = 63.0;
+/// The cutting planes are those of an octree of this depth.
+const LEVELS: u32 = 20;
+/// Triangles handled together by a thread.
+const CHUNK: usize = 4096;
+
+/// The octree whose planes cut.
+#[derive(Copy, Clone)]
+struct Octree {
+    origin: Vec3,
+    size: f32,
+}
+
+impl Octree {
+    fn cell(&self, x: f32, axis: usize) -> u32 {
+        ((x - self.origin[axis]) * ((1 << LEVELS) as f32 / self.size)) as u32
+    }
+
+    /// The plane of the coarsest level that goes through a box: the level, counted from the finest, the axis and the place.
+    fn plane(&self, b: &Bounds3) -> Option<(u32, usize, f32)> {
+        let mut best: Option<(u32, usize, f32)> = None;
+        for axis in 0..3 {
+            let [low, high] = [self.cell(b.min[axis], axis), self.cell(b.max[axis], axis)];
+            if low >= high {
+                continue;
+            }
+            let level = u32::BITS - 1 - (low ^ high).leading_zeros();
+            let longer = |other: usize| b.diagonal()[axis] > b.diagonal()[other];
+            if best.is_none_or(|(l, other, _)| level > l || level == l && longer(other)) {
+                let place =
+                    self.origin[axis] + (high >> level << level) as f32 * (self.size / (1 << LEVELS) as f32);
+                best = Some((level, axis, place));
+            }
+        }
+        best.filter(|&(_, axis, place)| b.min[axis] < place && place < b.max[axis])
+    }
+
+    /// How much cutting a triangle promises: the cube root of the area of its box that is for nothing, weighted by the level of the plane that
+    /// would cut it first.
+    fn priority(&self, p: [Vec3; 3]) -> f32 {
+        let b = Bounds3::around(p);
+        let Some((level, ..)) = self.plane(&b) else { return 0.0 };
+        let c = (p[1] - p[0]).cross(p[2] - p[0]).abs();
+        let wasted = (2.0 * b.half_area() - c.element_sum()).max(0.0);
+        let priority = ops::cbrt(wasted * (1u32 << level) as f32);
+        if priority.is_finite() { priority } else { 0.0 }
+    }
+}
+
+/// How many cuts a priority is worth.
+fn cuts(priority: f32, scale: f32) -> usize {
+    (priority * scale).min(MOST) as usize
+}
+
+/// Cuts triangles; their parts follow behind the references. The result does not depend on the number of threads.
+pub(crate) fn presplit(
+    references: &mut Vec<Reference>,
+    positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
+) {
+    let bounds = references
+        .par_chunks(CHUNK)
+        .map(|chunk| chunk.iter().fold(Bounds3::EMPTY, |b, r| b.union(r.bounds().bounds())))
+        .reduce(|| Bounds3::EMPTY, Bounds3::union);
+    let octree = Octree { origin: bounds.min, size: bounds.diagonal().max_element() };
+    let corners = |r: &Reference| match r.target() {
+        Target::Triangle(id) => Some(positions(id)),
+        _ => None,
+    };
+    let priorities: Vec<f32> =
+        references.par_iter().map(|r| corners(r).map_or(0.0, |p| octree.priority(p))).collect();
+    // Sums in a fixed order.
+    let sums: Vec<f64> =
+        priorities.par_chunks(CHUNK).map(|chunk| chunk.iter().map(|&p| f64::from(p)).sum()).collect();
+    let mean = (sums.iter().sum::<f64>() / references.len().max(1) as f64) as f32;
+    if !(mean > 0.0) {
+        return;
+    }
+    let count = |scale: f32| -> usize { priorities.par_iter().map(|&p| cuts(p, scale)).sum() };
+    let budget = (EXTRA * references.len() as f32) as usize;
+    let mut scale = 1.0 / (OUTSTANDING * mean);
+    if count(scale) > budget {
+        let (mut low, mut high) = (0.0, scale);
+        for _ in 0..16 {
+            scale = 0.5 * (low + high);
+            if count(scale) > budget { high = scale } else { low = scale }
+        }
+        scale = low;
+    }
+    let cut = |(chunk, priorities): (&mut [Reference], &[f32])| {
+        let mut parts = Vec::new();
+        for (reference, &priority) in chunk.iter_mut().zip(priorities) {
+            let cuts = cuts(priority, scale);
+            if let (Some(corners), true) = (corners(reference), cuts > 0) {
+                let own = parts.len();
+                let size = Bounds3::around(corners).diagonal().max_element();
+                octree.cut(&corners, cuts, &mut |b| parts.push(reference.with_bounds(padded(b, size))));
+                // One of them takes the place of the whole.
+                *reference = parts.swap_remove(own);
+            }
+        }
+        parts
+    };
+    let parts: Vec<Vec<Reference>> =
+        references.par_chunks_mut(CHUNK).zip(priorities.par_chunks(CHUNK)).map(cut).collect();
+    drop(priorities);
+    references.reserve_exact(parts.iter().map(Vec::len).sum());
+    parts.iter().for_each(|parts| references.extend(parts));
+}
+
+impl Octree {
+    /// Cuts a convex polygon and gives the boxes of its parts.
+    fn cut(&self, polygon: &[Vec3], cuts: usize, give: &mut impl FnMut(Bounds3)) {
+        let bounds = Bounds3::around(polygon.iter().copied());
+        let Some((_, axis, place)) = self.plane(&bounds).filter(|_| cuts > 0) else { return give(bounds) };
+        let mut halves = [Vec::with_capacity(8), Vec::with_capacity(8)];
+        for (i, &a) in polygon.iter().enumerate() {
+            let b = polygon[(i + 1) % polygon.len()];
+            if a[axis] <= place {
+                halves[0].push(a);
+            }
+            if a[axis] >= place {
+                halves[1].push(a);
+            }
+            if (a[axis] < place) != (b[axis] < place) && a[axis] != place && b[axis] != place {
+                // In double precision: what is left of the error is far below what boxes are padded by.
+                let (a, b) = (a.as_dvec3(), b.as_dvec3());
+                let s = (f64::from(place) - a[axis]) / (b[axis] - a[axis]);
+                let mut p = (a + s * (b - a)).as_vec3();
+                p[axis] = place;
+                halves.iter_mut().for_each(|half| half.push(p));
+            }
+        }
+        let size = |half: &[Vec3]| Bounds3::around(half.iter().copied()).diagonal().max_element();
+        let [low, high] = [size(&halves[0]), size(&halves[1])];
+        let left = cuts - 1;
+        let for_low = ((left as f32 * low / (low + high)).round() as usize).min(left);
+        self.cut(&halves[0], for_low, give);
+        self.cut(&halves[1], left - for_low, give);
+    }
+}
