@@ -222,17 +222,17 @@ fn z_order_spreads_samples_over_blocks_of_pixels() {
 
 #[test]
 fn prefixes_of_a_round_are_spread_too() {
-    // The first 4ʲ samples of a round are a net: stopping early, or a count that is no power of two, keeps most of the gain.
+    // The first 4ʲ samples of a round, 64 at least where there are more, are a net: stopping early, or a count that is no power of
+    // two, keeps most of the gain.
     for kind in [SamplerKind::PaddedSobol, SamplerKind::ZSobol] {
-        for n in [16u32, 64, 100, 256] {
+        for (n, part) in [(16u32, 16), (64, 64), (100, 64), (256, 64), (256, 256), (1000, 256), (1024, 64)] {
             let s = Sampler::new(kind, n, 3);
-            let part = 4u32.pow(n.ilog2() / 2);
             let mut seen = vec![false; part as usize];
-            let side = 1 << (part.ilog2() / 2);
+            let side = 1 << (u32::ilog2(part) / 2);
             for p in round(&s, UVec2::new(9, 2), 0).take(part as usize) {
                 let u = p.get_2d(Dimension::LENS);
                 let k = cell(u.x, side) * side as usize + cell(u.y, side);
-                assert!(!std::mem::replace(&mut seen[k], true), "{kind:?} {n}");
+                assert!(!std::mem::replace(&mut seen[k], true), "{kind:?} {n}: {part}");
             }
         }
     }
@@ -306,8 +306,8 @@ fn numbers_never_change() {
     let known = [
         [9_491_982, 6_478_519, 3_128_878],
         [14_224_737, 14_202_542, 782_219],
-        [15_999_804, 5_311_706, 6_144_740],
-        [4_074_158, 14_739_237, 9_686_671],
+        [12_637_594, 2_845_775, 3_862_346],
+        [151_688, 700_693, 15_572_080],
         [14_224_736, 3_550_635, 4_389_858],
         [14_224_736, 5_647_787, 3_341_282],
         [862_696, 7_412_397, 12_046_135],

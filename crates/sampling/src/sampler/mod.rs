@@ -141,7 +141,8 @@ impl Sampler {
             }
             SamplerKind::ZSobol => {
                 let (round, index) = self.round(index);
-                Pattern::Sobol(zsobol::at(combine(seed, !round), pixel, index, self.samples_per_pixel))
+                let (seed, order) = (combine(seed, !round), pixel_seed.wrapping_add(round));
+                Pattern::Sobol(zsobol::at(seed, order, pixel, index, self.samples_per_pixel))
             }
             SamplerKind::NRooks => Pattern::NRooks(rooks()),
             SamplerKind::MultiJittered => Pattern::MultiJittered(self.multi_jittered.at(rooks())),

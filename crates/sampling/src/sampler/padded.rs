@@ -4,5 +4,5 @@ use super::sobol::SobolSample;
 /// (Burley 2020, "Practical Hash-based Owen Scrambling").
 #[inline]
 pub(super) fn at(seed: u64, index: u32, count: u32) -> SobolSample {
-    SobolSample::new(seed, 0, index, count)
+    SobolSample::new(seed, 0, 0, index, count)
 }

@@ -10,49 +10,100 @@
 //! a digit in eight of the 24 ways; the rest comes from shears, which add the digit's one bit to the other
 //! where bits derived from the digits above say so.
 
+use super::permute::permute;
 use crate::hash::{combine, unit_f32};
 use tenfold_math::Vec2;
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub(super) struct SobolSample {
     seed: u64,
-    /// The index with its topmost bit in bit 0.
+    /// What permutes the block, besides the dimension.
+    block_seed: u64,
+    /// The index with its topmost bit in bit 0, without those of the place in the block.
     mirrored: u64,
-    /// The first bits of all whole digits of the index.
-    digits: u64,
+    /// The place of the sample in its block, and how many there are.
+    place: u32,
+    size: u32,
+    /// The bits of a place.
+    place_bits: u32,
     /// 64 less the number of bits of the index.
     shift: u32,
+    /// The first bits of all whole digits of the index.
+    digits: u64,
 }
 
+/// A block of consecutive samples of a pixel, which are permuted freely, is an index of at most so many bits: those that are left
+/// by whole digits above.
+const BLOCK_BITS: u32 = 6;
+
 impl SobolSample {
-    /// The sample `index` of `count` at the place of the tree with the `mirrored` path of 16 base-4 digits.
+    /// The sample `index` of `count` at the place of the tree with the mirrored `path` of 16 base-4 digits. `order` is a hash of the
+    /// pixel, `seed` one of what its tree is for.
     #[inline]
-    pub(super) fn new(seed: u64, mirrored: u64, index: u32, count: u32) -> Self {
+    pub(super) fn new(seed: u64, order: u64, path: u32, index: u32, count: u32) -> Self {
         let bits = 32 - (count - 1).leading_zeros();
-        let low = u64::from(index).reverse_bits() >> (32 - bits);
+        let place_bits = bits.min(BLOCK_BITS - bits % 2);
+        let place = index & ((1 << place_bits) - 1);
+        let first = index - place;
+        let size = (count - first).min(1 << place_bits);
+        let above = u64::from(first).reverse_bits() >> (32 - bits);
         // With an odd number of bits the last digit has one bit only, and nothing to shear it with.
-        let whole = 32 + (bits & !1);
-        let digits = 0x5555_5555_5555_5555 & (u64::MAX >> (64 - whole));
-        Self { seed, mirrored: mirrored | low, digits, shift: 32 - bits }
+        let digits = 0x5555_5555_5555_5555 & (u64::MAX >> (32 - (bits & !1)));
+        let block_seed = order.wrapping_add(u64::from(first).wrapping_mul(0xa24b_aed4_963e_e407));
+        let mirrored = u64::from(path) | above;
+        Self { seed, block_seed, mirrored, place, size, place_bits, shift: 32 - bits, digits }
     }
 
     #[inline]
     pub(super) fn get_1d(&self, key: u32) -> f32 {
         let h = combine(self.seed, u64::from(key));
-        let index = shuffle(self.mirrored, h, self.digits) << self.shift;
-        let x = scramble(((index >> 32) as u32).reverse_bits(), h as u32);
+        let x = scramble(((self.point(h) >> 32) as u32).reverse_bits(), h as u32);
         unit_f32(x.reverse_bits())
     }
 
     #[inline]
     pub(super) fn get_2d(&self, key: u32) -> Vec2 {
         let h = combine(self.seed, u64::from(key));
-        let index = (shuffle(self.mirrored, h, self.digits) << self.shift).reverse_bits();
+        let index = self.point(h).reverse_bits();
         let x = scramble(index as u32, h as u32);
         let y = scramble(second(index), (h >> 32) as u32);
         let bits = (u64::from(y) << 32 | u64::from(x)).reverse_bits();
         Vec2::new(unit_f32((bits >> 32) as u32), unit_f32(bits as u32))
     }
+
+    /// The mirrored index, its lowest bit in bit 63, of the point that the sample takes in the dimension with the hash `h`.
+    #[inline]
+    fn point(&self, h: u64) -> u64 {
+        let key = h ^ self.block_seed;
+        let point = if self.size == 1 << self.place_bits {
+            // All places of a whole block are taken, so they need not be nested in anything, nor be mirrored.
+            let place = u64::from(scatter(self.place, self.place_bits, key));
+            shuffle(self.mirrored, h, self.digits) ^ place << (64 - self.place_bits - self.shift)
+        } else {
+            shuffle(self.mirrored | self.permuted(key), h, self.digits)
+        };
+        point << self.shift
+    }
+
+    /// The place in a block that is not whole, mirrored, where it belongs in the index.
+    #[cold]
+    #[inline(never)]
+    fn permuted(&self, key: u64) -> u64 {
+        u64::from(permute(self.place, self.size, key).reverse_bits()) << (32 - self.shift)
+    }
+}
+
+/// A keyed bijection of the numbers of `bits` bits. The variance of a mean asks of a permutation where it takes *pairs*: of few
+/// numbers to all others nearly, of many to all others equally often.
+#[inline]
+fn scatter(x: u32, bits: u32, key: u64) -> u32 {
+    let mask = ((1u64 << bits) - 1) as u32;
+    let (half, third) = (bits.div_ceil(2), (bits / 3).max(1));
+    let x = x.wrapping_mul((key >> 48) as u32 | 1).wrapping_add((key >> 32) as u32) & mask;
+    let x = x ^ x >> half;
+    let x = x.wrapping_mul((key >> 40) as u32 | 1) & mask;
+    let x = x ^ (x >> third & (key >> 56) as u32);
+    x.wrapping_mul((key >> 54) as u32 | 1).wrapping_add((key >> 24) as u32) & mask
 }
 
 /// Permutes the base-4 digits of a mirrored index, each by a permutation that the digits above it and `h` choose.
@@ -99,6 +150,7 @@ mod tests {
     use super::*;
     use crate::hash::mix_bits;
     use std::collections::HashMap;
+    use tenfold_testkit::Welford;
 
     #[test]
     fn the_second_coordinate_has_sobols_matrix() {
@@ -109,6 +161,42 @@ mod tests {
             column ^= column >> 1;
         }
         assert_eq!(second(0b1011), second(0b1000) ^ second(0b11));
+    }
+
+    #[test]
+    fn scattered_numbers_are_permuted_and_their_pairs_nearly_uniform() {
+        for bits in 0..=12 {
+            for seed in 1..=50 {
+                let mut seen = vec![false; 1 << bits];
+                for i in 0..1 << bits {
+                    let j = scatter(i, bits, mix_bits(seed));
+                    assert!(!std::mem::replace(&mut seen[j as usize], true));
+                }
+            }
+        }
+        // The relative mean square deviation of the frequencies of pairs, without what chance adds. These are bounds of what was
+        // measured. Permutations nested in blocks of four have 4 for two numbers of a block of 16, and more of 64.
+        let mut all = Welford::new();
+        for bits in 2..=6 {
+            let (n, trials) = (1u32 << bits, 100_000u64);
+            for (i, j) in [(0, 1), (1, n - 1), (n / 2, 0), (0, n - 1), (n / 4, n / 2), (3, 2), (n - 3, 1)] {
+                if i == j {
+                    continue;
+                }
+                let mut counts = vec![0u64; (n * n) as usize];
+                for seed in 1..=trials {
+                    let at = |i| scatter(i, bits, mix_bits(seed));
+                    counts[(at(i) * n + at(j)) as usize] += 1;
+                }
+                let each = trials as f64 / f64::from(n * (n - 1));
+                let square = |k: u32| (counts[k as usize] as f64 / each - 1.0).powi(2) - 1.0 / each;
+                let distinct = (0..n * n).filter(|k| k / n != k % n);
+                let deviation = distinct.map(square).sum::<f64>() / f64::from(n * (n - 1));
+                assert!(deviation < 0.8, "{bits} bits, pair {i}, {j}: {deviation}");
+                all.add(deviation);
+            }
+        }
+        assert!(all.mean < 0.15, "{}", all.mean);
     }
 
     #[test]
