@@ -121,7 +121,8 @@ impl SurfaceInteraction {
     /// The point as lights see it.
     #[inline]
     pub fn reference(&self) -> ReferencePoint {
-        ReferencePoint { p: self.p, p_error: self.p_error, n: self.n, ns: self.shading.n, time: self.time }
+        let Self { p, p_error, n, time, .. } = *self;
+        ReferencePoint { p, p_error, n, ns: self.shading.n, one_sided: false, time }
     }
 
     /// The point as [`Primitive::pdf_from_point`](crate::Primitive::pdf_from_point) wants it, where this surface is a

@@ -10,8 +10,10 @@ pub struct ReferencePoint {
     pub p_error: Vec3,
     /// Its geometric normal; zero where the point lies on no surface.
     pub n: Vec3,
-    /// Its shading normal; zero where the point lies on no surface. Sampling favours directions near ±`ns`.
+    /// Its shading normal; zero where the point lies on no surface.
     pub ns: Vec3,
+    /// Whether only light that arrives on the side of `ns` matters. Sampling favours directions near `ns`, or near ±`ns`.
+    pub one_sided: bool,
     /// The time of the path.
     pub time: f32,
 }
@@ -19,7 +21,21 @@ pub struct ReferencePoint {
 impl ReferencePoint {
     /// A point on no surface (in a medium, or of a camera).
     pub fn free(p: Vec3, time: f32) -> Self {
-        Self { p, p_error: Vec3::ZERO, n: Vec3::ZERO, ns: Vec3::ZERO, time }
+        Self { p, p_error: Vec3::ZERO, n: Vec3::ZERO, ns: Vec3::ZERO, one_sided: false, time }
+    }
+
+    /// The same point where only light that arrives on the side of `w` matters, which an opaque surface shows there.
+    #[inline]
+    #[must_use]
+    pub fn seen_from(self, w: Vec3) -> Self {
+        Self { ns: if self.ns.dot(w) < 0.0 { -self.ns } else { self.ns }, one_sided: true, ..self }
+    }
+
+    /// Weight by the cosine of light from the unit direction `w`: 0 where it does not matter.
+    #[inline]
+    pub fn cosine(&self, w: Vec3) -> f32 {
+        let cos = self.ns.dot(w);
+        if self.one_sided { cos.max(0.0) } else { cos.abs() }
     }
 
     /// A ray that leaves toward `direction` and cannot meet the surface of the point again by rounding.
@@ -103,8 +119,8 @@ pub(crate) fn pdf_by_solid_angle(pdf_area: f32, to_light: Vec3, n: Vec3) -> f32 
     if pdf.is_finite() { pdf } else { 0.0 }
 }
 
-/// Weights of the corners of the unit square that lie in directions `w`: |cos| to the shading normal, kept off zero so
+/// Weights of the corners of the unit square that lie in directions `w`: the cosine to the shading normal, kept off zero so
 /// that every direction stays possible (pbrt book, 4th edition, §6.5.4).
-pub(crate) fn cosine_weights(ns: Vec3, w: [Vec3; 4]) -> [f32; 4] {
-    w.map(|w| ns.dot(w).abs().max(0.01))
+pub(crate) fn cosine_weights(reference: &ReferencePoint, w: [Vec3; 4]) -> [f32; 4] {
+    w.map(|w| reference.cosine(w).max(0.01))
 }

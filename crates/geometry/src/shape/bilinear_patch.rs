@@ -247,7 +247,7 @@ impl<'a> BilinearPatch<'a> {
 
     fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
         let to_corner = self.positions().map(|p| (p - reference.p).normalize_or_zero());
-        cosine_weights(reference.ns, to_corner)
+        cosine_weights(reference, to_corner)
     }
 
     pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {

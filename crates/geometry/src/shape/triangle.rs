@@ -205,7 +205,7 @@ impl<'a> Triangle<'a> {
     /// Weights of the corners of the unit square that [`SphericalTriangle`] maps to: its lower edge is the second vertex.
     fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
         let [a, b, c] = self.positions().map(|p| (p - reference.p).normalize_or_zero());
-        cosine_weights(reference.ns, [b, b, a, c])
+        cosine_weights(reference, [b, b, a, c])
     }
 }
 

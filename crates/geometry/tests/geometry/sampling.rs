@@ -97,6 +97,7 @@ fn references(rng: &mut Rng, centre: Vec3, distances: &[f32]) -> Vec<ReferencePo
             if i % 2 == 1 {
                 r.n = rng.direction();
                 r.ns = (r.n + 0.1 * rng.direction()).normalize();
+                r.one_sided = i % 4 == 3;
             }
             r
         })

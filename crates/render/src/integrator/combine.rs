@@ -5,7 +5,7 @@
 /// without extent, and light that arrives from a specular direction or straight at the camera.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum CombineStrategy {
-    /// Both, weighed against each other by the balance heuristic (Veach 1997, §9.2).
+    /// Both, weighed against each other by the power heuristic with exponent 2 (Veach 1997, §9.2).
     #[default]
     Mis,
     /// Points sampled on lights alone.

@@ -61,34 +61,44 @@ impl Path {
         emitted: SampledSpectrum,
         light_pdf: impl FnOnce(&ReferencePoint) -> f32,
     ) -> SampledSpectrum {
+        let density = self.lanes.mean(self.ratio);
         let density = match &self.arrival {
-            Arrival::Specular => self.ratio,
+            Arrival::Specular => density,
             Arrival::Scattered { from, light_ratio } => {
                 let light_pdf = light_pdf(from);
                 match combine {
-                    CombineStrategy::Mis => self.ratio + *light_ratio * light_pdf,
+                    CombineStrategy::Mis => {
+                        let light_density = self.lanes.mean(*light_ratio) * light_pdf;
+                        density + light_density * (light_density / density)
+                    }
                     CombineStrategy::LightOnly if light_pdf > 0.0 => return SampledSpectrum::ZERO,
-                    CombineStrategy::LightOnly | CombineStrategy::BsdfOnly => self.ratio,
+                    CombineStrategy::LightOnly | CombineStrategy::BsdfOnly => density,
                 }
             }
         };
-        self.beta * emitted / self.lanes.mean(density)
+        self.beta * emitted / density
     }
 
     /// Per lane, the density by which to divide light that was sampled at the vertex where the path is, weighed against a
-    /// scattered direction that meets it by itself with density `scatter_pdf`; `None` where the latter alone counts.
+    /// scattered direction that meets it by itself with density `scatter_pdf`; `None` where the latter alone counts. Where lanes part
+    /// (`parts`) each weighs its own densities, otherwise all weigh those of all.
     #[inline]
     pub(super) fn density_of_sampled(
         &self,
         combine: CombineStrategy,
         light: &LightSample,
         scatter_pdf: SampledSpectrum,
+        parts: bool,
     ) -> Option<SampledSpectrum> {
+        let all = |x: SampledSpectrum| if parts { x } else { SampledSpectrum::splat(self.lanes.mean(x)) };
+        let density = all(self.ratio * light.pdf);
         match combine {
-            _ if light.delta => Some(self.ratio * light.pdf),
-            CombineStrategy::Mis => Some(self.ratio * (SampledSpectrum::splat(light.pdf) + scatter_pdf)),
-            CombineStrategy::LightOnly => Some(self.ratio * light.pdf),
-            CombineStrategy::BsdfOnly => None,
+            CombineStrategy::Mis if !light.delta => {
+                let scattered = all(self.ratio * scatter_pdf);
+                Some(density + scattered * scattered.safe_div(density))
+            }
+            CombineStrategy::BsdfOnly if !light.delta => None,
+            _ => Some(density),
         }
     }
 

@@ -11,7 +11,7 @@ use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 /// Lights that are somewhere are chosen by a light tree, with bounds on what each group can send to the
 /// point; those infinitely far away stand beside the tree as one candidate each. Every density is exact:
 /// [`Lights::pdf_hit`] and [`Lights::pdf_escaped`] are what [`Lights::sample`] gives for the same point. The
-/// importance of a light is 0 only where none of its light arrives, from whichever side of the surface;
+/// importance of a light is 0 only where none of its light arrives that matters there ([`ReferencePoint::one_sided`]);
 /// lights that emit nothing are never chosen.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
@@ -30,12 +30,11 @@ struct FarLight {
 }
 
 impl FarLight {
-    /// An estimate of the irradiance at a surface with unit normal `n`, zero for none: comparable to that of
-    /// the tree.
+    /// An estimate of the irradiance at `from`: comparable to that of the tree.
     #[inline]
-    fn importance(&self, n: Vec3) -> f32 {
+    fn importance(&self, from: &ReferencePoint) -> f32 {
         match self.direction {
-            Some(d) if n != Vec3::ZERO => self.irradiance * d.dot(n).abs(),
+            Some(d) if from.ns != Vec3::ZERO => self.irradiance * from.cosine(d),
             _ => self.irradiance,
         }
     }
@@ -191,7 +190,7 @@ impl Lights {
     pub fn pmf(&self, from: &ReferencePoint, light: Id<Light>) -> f32 {
         let light = light.index();
         if self.tree.contains(light) {
-            let in_tree = self.tree.pmf(from.p, from.ns, light);
+            let in_tree = self.tree.pmf(from, light);
             if self.far.is_empty() || in_tree == 0.0 {
                 return in_tree;
             }
@@ -199,17 +198,17 @@ impl Lights {
             return candidates.probability(candidates.tree) * in_tree;
         }
         match self.far.iter().find(|far| far.light as usize == light) {
-            Some(far) => self.candidates(from).probability(far.importance(from.ns)),
+            Some(far) => self.candidates(from).probability(far.importance(from)),
             None => 0.0,
         }
     }
 
     #[inline]
     fn candidates(&self, from: &ReferencePoint) -> Candidates {
-        let tree = self.tree.importance(from.p, from.ns);
+        let tree = self.tree.importance(from);
         let mut candidates = Candidates { tree, total: tree, count: if tree > 0.0 { 1.0 } else { 0.0 } };
         for far in &self.far {
-            let importance = far.importance(from.ns);
+            let importance = far.importance(from);
             if importance > 0.0 {
                 candidates.total += importance;
                 candidates.count += 1.0;
@@ -225,7 +224,7 @@ impl Lights {
             let candidates = self.candidates(from);
             let mut chosen = None;
             for far in &self.far {
-                let pmf = candidates.probability(far.importance(from.ns));
+                let pmf = candidates.probability(far.importance(from));
                 if pmf > 0.0 {
                     chosen = Some(Choice { light: far.light as usize, pmf });
                     if u < pmf {
@@ -241,7 +240,7 @@ impl Lights {
             }
             u = (u / p_tree).clamp(0.0, tenfold_math::ONE_MINUS_EPSILON);
         }
-        let chosen = self.tree.sample(from.p, from.ns, u)?;
+        let chosen = self.tree.sample(from, u)?;
         Some(Choice { light: chosen.light as usize, pmf: p_tree * chosen.pmf })
     }
 }

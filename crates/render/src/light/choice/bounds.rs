@@ -1,7 +1,7 @@
 //! What a light, or a group of lights, can send toward a point at most: the measure by which lights are chosen.
 
 use super::cone;
-use tenfold_geometry::NormalCone;
+use tenfold_geometry::{NormalCone, ReferencePoint};
 use tenfold_math::ops;
 use tenfold_math::{Bounds3, Vec3};
 
@@ -130,14 +130,14 @@ impl Clusters {
         self.two_sided[lane] = b.two_sided;
     }
 
-    /// An estimate of the irradiance at `p` from each lane on a surface of unit normal `n`, whichever of its
-    /// sides is lit; on a surface turned toward the light where `n` vanishes. It is 0 only where no light
-    /// arrives (Conty Estevez and Kulla 2018, section 4.2; pbrt book, 4th edition, section 12.6.3), and stays
+    /// An estimate of the irradiance at `from` from each lane, on the sides of the surface that matter there; on a surface
+    /// turned toward the light where there is none. It is 0 only where no light arrives (Conty Estevez and Kulla 2018, section 4.2; pbrt book, 4th edition, section 12.6.3), and stays
     /// finite inside of a cluster: the distance counts as the radius of the cluster at least.
     // One index for all arrays; and unlike `clamp`, `max` turns what is not a number into 0.
     #[allow(clippy::needless_range_loop, clippy::manual_clamp)]
     #[inline]
-    pub(super) fn importance(&self, p: Vec3, n: Vec3) -> [f32; LANES] {
+    pub(super) fn importance(&self, from: &ReferencePoint) -> [f32; LANES] {
+        let (p, n) = (from.p, from.ns);
         let on_surface = n != Vec3::ZERO;
         let mut importance = [0.0; LANES];
         // Without branches or calls, so that the compiler makes vectors of the lanes.
@@ -161,8 +161,9 @@ impl Clusters {
             let cos_x = cos_difference(cos_w, sin_w, cos_o, sin_o);
             let sin_x = sin_difference(cos_w, sin_w, cos_o, sin_o);
             let cos_emitted = cos_difference(cos_x, sin_x, cos_b, sin_b);
-            let cos_i = (n.x * w[0] + n.y * w[1] + n.z * w[2]).abs();
-            let facing = cos_difference(cos_i, sin_of(cos_i), cos_b, sin_b);
+            let cos_i = -(n.x * w[0] + n.y * w[1] + n.z * w[2]);
+            let cos_i = if from.one_sided { cos_i } else { cos_i.abs() };
+            let facing = cos_difference(cos_i, sin_of(cos_i), cos_b, sin_b).max(0.0);
             let facing = if on_surface { facing } else { 1.0 };
             let value = (self.intensity[i] * cos_emitted * facing / distance2).max(0.0).min(MAX_IMPORTANCE);
             let reached = (cos_emitted > self.cos_emission[i]) & (distance2 > 0.0);
@@ -182,7 +183,7 @@ mod tests {
         fn importance(&self, p: Vec3, n: Vec3) -> f32 {
             let mut clusters = Clusters::EMPTY;
             clusters.set(3, &self.0);
-            let importance = clusters.importance(p, n);
+            let importance = clusters.importance(&ReferencePoint { ns: n, ..ReferencePoint::free(p, 0.0) });
             assert_eq!(importance.iter().sum::<f32>(), importance[3]);
             importance[3]
         }

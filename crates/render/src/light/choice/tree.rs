@@ -4,7 +4,8 @@
 
 use super::bounds::{Clusters, LANES, LightBounds};
 use super::split::split;
-use tenfold_math::{ONE_MINUS_EPSILON, Vec3};
+use tenfold_geometry::ReferencePoint;
+use tenfold_math::ONE_MINUS_EPSILON;
 
 /// Depth from which groups are halved: no light is then deeper than a trail is long.
 const HALVE_FROM: usize = 10;
@@ -92,23 +93,22 @@ impl LightTree {
         self.trails[light] != NOWHERE
     }
 
-    /// An estimate of the irradiance from all lights at `p`, see [`Clusters::importance`].
+    /// An estimate of the irradiance from all lights at `from`, see [`Clusters::importance`].
     #[inline]
-    pub(in crate::light) fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        self.nodes.first().map_or(0.0, |root| root.clusters.importance(p, n).iter().sum())
+    pub(in crate::light) fn importance(&self, from: &ReferencePoint) -> f32 {
+        self.nodes.first().map_or(0.0, |root| root.clusters.importance(from).iter().sum())
     }
 
-    /// Draws a light by `u` in `[0, 1)`, for the point `p` with normal `n` (zero for none). `None` where no light
-    /// reaches the point, or where the descent ends at lights that do not.
+    /// Draws a light by `u` in `[0, 1)`, for the point `from`. `None` where no light reaches it, or where the descent ends at lights that do not.
     #[inline]
-    pub(in crate::light) fn sample(&self, p: Vec3, n: Vec3, mut u: f32) -> Option<TreeSample> {
+    pub(in crate::light) fn sample(&self, from: &ReferencePoint, mut u: f32) -> Option<TreeSample> {
         if let Some(light) = self.only {
             return Some(TreeSample { light, pmf: 1.0 });
         }
         let mut node = self.nodes.first()?;
         let mut pmf = 1.0;
         loop {
-            let weights = node.clusters.importance(p, n);
+            let weights = node.clusters.importance(from);
             let total: f32 = weights.iter().sum();
             let mut rest = u * total;
             // The last lane of positive weight takes what rounding leaves over.
@@ -135,7 +135,7 @@ impl LightTree {
 
     /// The probability with which [`LightTree::sample`] draws `light`.
     #[inline]
-    pub(in crate::light) fn pmf(&self, p: Vec3, n: Vec3, light: usize) -> f32 {
+    pub(in crate::light) fn pmf(&self, from: &ReferencePoint, light: usize) -> f32 {
         let mut trail = self.trails[light];
         if trail == NOWHERE {
             return 0.0;
@@ -146,7 +146,7 @@ impl LightTree {
         let mut node = &self.nodes[0];
         let mut pmf = 1.0;
         loop {
-            let weights = node.clusters.importance(p, n);
+            let weights = node.clusters.importance(from);
             let lane = trail as usize % LANES;
             trail >>= LANE_BITS;
             if weights[lane] <= 0.0 {

@@ -76,7 +76,9 @@ fn lights_are_chosen_as_often_as_their_probability() {
     all.push(Light::Distant(DistantLight { direction: Vec3::Y, irradiance: constant(0.7) }));
     let lights = Lights::build(all);
     let samples = 200_000;
-    for (i, from) in points().iter().enumerate() {
+    let [flat, inclined, ..] = points();
+    let opaque = [flat.seen_from(Vec3::NEG_Z), inclined.seen_from(Vec3::Z)];
+    for (i, from) in points().iter().chain(&opaque).enumerate() {
         let mut rng = Rng::new(10 + i as u64);
         let mut observed = vec![0u64; lights.len() + 1];
         for _ in 0..samples {
@@ -92,9 +94,29 @@ fn lights_are_chosen_as_often_as_their_probability() {
         let mut expected: Vec<f64> =
             ids(&lights).map(|id| samples as f64 * f64::from(lights.pmf(from, id))).collect();
         expected.push((samples as f64 - expected.iter().sum::<f64>()).max(0.0));
-        let options = Options { tests: points().len(), ..Options::default() };
+        let options = Options { tests: points().len() + opaque.len(), ..Options::default() };
         counts_test(&observed, &expected, &options).check(&format!("reference {i}"));
     }
+}
+
+/// On an opaque surface lights behind it are not chosen, and those before it as often as if there were no others.
+#[test]
+fn opaque_surfaces_have_no_use_for_lights_behind_them() {
+    let lamp =
+        |z: f32| Light::Point(PointLight { position: Vec3::new(0.3, 0.2, z), intensity: constant(1.0) });
+    let lights = Lights::build(vec![
+        lamp(1.0),
+        lamp(-1.0),
+        Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, 0.8), irradiance: constant(0.1) }),
+        Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, -0.8), irradiance: constant(0.1) }),
+    ]);
+    let from = surface(Vec3::ZERO, Vec3::Z);
+    let pmfs = |from: &ReferencePoint| [0, 1, 2, 3].map(|i| lights.pmf(from, Id::new(i)));
+    let sheer = pmfs(&from);
+    assert!(sheer[0] == sheer[1] && sheer[2] == sheer[3] && sheer[0] + sheer[2] == 0.5, "{sheer:?}");
+    let (above, below) = (pmfs(&from.seen_from(Vec3::Z)), pmfs(&from.seen_from(Vec3::NEG_Z)));
+    assert!(above[1] == 0.0 && above[3] == 0.0 && (above[0] + above[2] - 1.0).abs() < 1e-6, "{above:?}");
+    assert_eq!([above[1], above[0], above[3], above[2]], below);
 }
 
 /// Σ of all lights' irradiance (from both sides), and the estimates by choosing one.
