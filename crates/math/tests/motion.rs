@@ -177,3 +177,32 @@ fn bounds_hold_the_whole_sweep_and_little_more() {
     let m = random_motion(&mut rng, 3);
     assert_eq!(m.bounds(&Bounds3::EMPTY, 0.0, 1.0), Bounds3::EMPTY);
 }
+
+#[test]
+fn linear_bounds_hold_the_box_all_the_time() {
+    let mut rng = Rng::new(9);
+    let unit = Bounds3::new(Vec3::ZERO, Vec3::ONE);
+    for case in 0..60 {
+        let m = match case % 3 {
+            // Nothing but a translation.
+            0 => {
+                let start = random_transform(&mut rng);
+                Motion::new(start, 0.0, Transform::translate(in_box(&mut rng, 2.0)) * start, 1.0)
+            }
+            keys => random_motion(&mut rng, 1 + keys),
+        };
+        let (from, to) = (0.2 * rng.f32(), 0.5 + rng.f32());
+        let [a, b] = m.linear_bounds(&unit, from, to);
+        for k in 0..=200 {
+            let s = k as f32 / 200.0;
+            let at = Bounds3 { min: a.min.lerp(b.min, s), max: a.max.lerp(b.max, s) }.expanded(1e-5);
+            for p in corners(&m, from + (to - from) * s) {
+                assert!(at.contains(p), "case {case} at {s}: {p} is not in {at:?}");
+            }
+        }
+        // They follow the way: at any time the box is smaller than that for all times.
+        if case % 3 == 0 {
+            assert!(a.half_area() < m.bounds(&unit, from, to).half_area());
+        }
+    }
+}

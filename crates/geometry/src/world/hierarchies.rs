@@ -8,7 +8,7 @@ use crate::{
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use tenfold_math::{Bounds3, Motion, Transform, Vec3};
+use tenfold_math::{Bounds3, Motion, Ray, Transform, Vec3, gamma};
 
 /// Where a placement goes.
 #[derive(Debug)]
@@ -24,6 +24,8 @@ pub(super) struct Placement {
     /// Of [`Hierarchies::lower`].
     pub(super) hierarchy: u32,
     path: Path,
+    /// Where it moves: boxes around it at the first and the last time, between which its box goes linearly.
+    swept: Option<Box<[Bounds3; 2]>>,
 }
 
 impl Placement {
@@ -35,7 +37,7 @@ impl Placement {
             }
             Some(inner) => Path::One(Motion::still(*outer.start() * *inner.start())),
         };
-        Self { hierarchy, path }
+        Self { hierarchy, path, swept: None }
     }
 
     /// Local to world at a time.
@@ -47,7 +49,21 @@ impl Placement {
         }
     }
 
-    fn bounds(&self, local: &Bounds3, [from, to]: [f32; 2]) -> Bounds3 {
+    /// Whether a ray at fraction `s` of the time can meet anything here. Transforming it to find out costs more.
+    #[inline]
+    pub(super) fn may_be_hit(&self, ray: &Ray, s: f32, t_max: f32) -> bool {
+        let Some([start, end]) = self.swept.as_deref() else { return true };
+        let inverse = ray.direction.recip();
+        let a = (start.min.lerp(end.min, s) - ray.origin) * inverse;
+        let b = (start.max.lerp(end.max, s) - ray.origin) * inverse;
+        // Room for rounding, as in the hierarchy; what is not a number decides nothing.
+        let near = a.min(b).max_element().max(0.0);
+        let far = a.max(b).min_element().min(t_max) * (1.0 + 2.0 * gamma(8));
+        !(far < near)
+    }
+
+    /// The box around it all the time, for what is in `local`; also prepares [`Placement::may_be_hit`].
+    fn sweep(&mut self, local: &Bounds3, [from, to]: [f32; 2]) -> Bounds3 {
         let (outer, local) = match &self.path {
             Path::One(motion) => (motion, *local),
             Path::Two(motions) => (&motions[0], motions[1].bounds(local, from, to)),
@@ -55,7 +71,14 @@ impl Placement {
         let between = outer.keys().iter().map(|key| key.time).filter(|time| from < *time && *time < to);
         let times = between.chain([from, to]);
         let rounding = times.map(|time| rounding(&outer.at(time), &local)).fold(0.0, f32::max);
-        outer.bounds(&local, from, to).expanded(rounding)
+        let bounds = outer.bounds(&local, from, to).expanded(rounding);
+        if outer.is_moving() && !bounds.is_empty() {
+            // Interpolating rounds, too.
+            let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+            let by = rounding + 4.0 * f32::EPSILON * size;
+            self.swept = Some(Box::new(outer.linear_bounds(&local, from, to).map(|b| b.expanded(by))));
+        }
+        bounds
     }
 }
 
@@ -67,6 +90,8 @@ fn rounding(t: &Transform, b: &Bounds3) -> f32 {
 /// Both levels.
 #[derive(Debug)]
 pub(super) struct Hierarchies {
+    /// First time of any ray, and the inverse of the time from there to the last (0 where there is none).
+    shutter: [f32; 2],
     pub(super) top: Bvh,
     pub(super) lower: Vec<Bvh>,
     pub(super) placements: Vec<Placement>,
@@ -124,9 +149,9 @@ impl Hierarchies {
         }
         check("instances", placements.len())?;
         let boxes: Vec<(Bounds3, u32)> = placements
-            .par_iter()
+            .par_iter_mut()
             .enumerate()
-            .map(|(i, p)| (p.bounds(&built[p.hierarchy as usize].0.bounds(), desc.shutter), i as u32))
+            .map(|(i, p)| (p.sweep(&built[p.hierarchy as usize].0.bounds(), desc.shutter), i as u32))
             .filter(|(b, _)| !b.is_empty())
             .collect();
         let (top, mut degenerate) = build_still(&desc.geometries, &top_members, &boxes);
@@ -140,7 +165,15 @@ impl Hierarchies {
             nodes: all().map(Bvh::node_count).sum(),
             bytes: all().map(Bvh::bytes).sum(),
         };
-        Ok((Self { top, lower, placements }, stats))
+        let [from, to] = desc.shutter;
+        let shutter = [from, if from < to { 1.0 / (to - from) } else { 0.0 }];
+        Ok((Self { shutter, top, lower, placements }, stats))
+    }
+
+    /// The fraction of the time between first and last.
+    #[inline]
+    pub(super) fn fraction(&self, time: f32) -> f32 {
+        ((time - self.shutter[0]) * self.shutter[1]).clamp(0.0, 1.0)
     }
 }
 

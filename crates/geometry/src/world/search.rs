@@ -97,6 +97,9 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor fo
         }
         let hierarchies = &self.world.hierarchies;
         let placement = &hierarchies.placements[index];
+        if !placement.may_be_hit(self.ray, hierarchies.fraction(self.ray.time), self.state.t_max) {
+            return false;
+        }
         let local = placement.at(self.ray.time).inverse().ray(self.ray);
         let mut below = Search::<ANY, false, F> {
             world: self.world,

@@ -1,5 +1,6 @@
 use super::{Key, Trs, swept};
 use crate::{Bounds3, Transform, ops};
+use glam::Mat3;
 
 /// The path between two keys: translation and stretch go linearly, the rotation at constant angular speed, as in pbrt
 /// (pbrt book, 3rd edition, §2.9.3).
@@ -8,13 +9,18 @@ pub(super) struct Line {
     pub(super) keys: [Key; 2],
     /// The keys taken apart.
     parts: [Trs; 2],
+    /// The transform at the start without its translation, where only that changes.
+    fixed: Option<Transform>,
 }
 
 impl Line {
     pub(super) fn new(keys: [Key; 2]) -> Self {
         let a = Trs::decompose(&keys[0].transform);
         let b = Trs::decompose(&keys[1].transform).nearer_to(&a);
-        Self { keys, parts: [a, b] }
+        let matrix = Mat3::from_quat(a.rotation) * a.stretch;
+        let fixed = Transform::from_affine(glam::Affine3A::from_mat3(matrix));
+        let only_moves = a.rotation == b.rotation && a.stretch == b.stretch;
+        Self { keys, parts: [a, b], fixed: fixed.filter(|_| only_moves) }
     }
 
     #[inline]
@@ -27,6 +33,10 @@ impl Line {
             return end.transform;
         }
         let s = (time - start.time) / (end.time - start.time);
+        if let Some(fixed) = &self.fixed {
+            let [a, b] = &self.parts;
+            return Transform::translate(a.translation * (1.0 - s) + b.translation * s) * *fixed;
+        }
         // Keys whose path runs through a singular map have no inverse at that instant: stay at the start.
         Transform::from_affine(self.interpolate(s).affine()).unwrap_or(start.transform)
     }
@@ -60,5 +70,10 @@ impl Line {
             })
             .fold(0f32, f32::max);
         swept(b, [s0, s1], steps, curvature, |s| self.interpolate(s))
+    }
+
+    /// Whether points go in straight lines at constant speeds all the time from `from` to `to`.
+    pub(super) fn is_linear(&self, from: f32, to: f32) -> bool {
+        self.fixed.is_some() && self.keys[0].time <= from && to <= self.keys[1].time
     }
 }

@@ -4,7 +4,7 @@ mod curve;
 mod line;
 mod trs;
 
-use crate::{Bounds3, Transform};
+use crate::{Bounds3, Transform, Vec3};
 use curve::Curve;
 use line::Line;
 use std::sync::Arc;
@@ -118,6 +118,32 @@ impl Motion {
             Path::Line(line) => line.bounds(b, from, to),
             Path::Curve(curve) => curve.bounds(b, from, to),
         }
+    }
+
+    /// Two boxes such that the box that goes linearly from the first, at time `from`, to the second, at time `to`, holds `b` all the time.
+    pub fn linear_bounds(&self, b: &Bounds3, from: f32, to: f32) -> [Bounds3; 2] {
+        // More follow the way closer, but each is made with care.
+        const STEPS: usize = 8;
+        let linear = match &self.0 {
+            Path::Still(_) => true,
+            Path::Line(line) => line.is_linear(from, to),
+            Path::Curve(_) => false,
+        };
+        let ends = [self.bounds(b, from, from), self.bounds(b, to, to)];
+        if linear || b.is_empty() || from >= to {
+            return ends;
+        }
+        // Both ends move outward by as much as the box over any short time reaches out.
+        let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+        for k in 0..STEPS {
+            let s = [k, k + 1].map(|k| k as f32 / STEPS as f32);
+            let short = self.bounds(b, from + (to - from) * s[0], from + (to - from) * s[1]);
+            for s in s {
+                low = low.max(ends[0].min.lerp(ends[1].min, s) - short.min);
+                high = high.max(short.max - ends[0].max.lerp(ends[1].max, s));
+            }
+        }
+        ends.map(|end| Bounds3 { min: end.min - low, max: end.max + high })
     }
 }
 
