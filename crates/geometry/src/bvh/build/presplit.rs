@@ -53,7 +53,8 @@ impl Octree {
         let b = Bounds3::around(p);
         let Some((level, ..)) = self.plane(&b) else { return 0.0 };
         let c = (p[1] - p[0]).cross(p[2] - p[0]).abs();
-        let wasted = (2.0 * b.half_area() - c.element_sum()).max(0.0);
+        // A right triangle fills half of its box, and cuts would not make it better by much.
+        let wasted = (2.0 * b.half_area() - 2.0 * c.element_sum()).max(0.0);
         let priority = ops::cbrt(wasted * (1u32 << level) as f32);
         if priority.is_finite() { priority } else { 0.0 }
     }
