@@ -3,6 +3,7 @@
 use crate::error::ImageErrorKind;
 use crate::ewa::{Ewa, EwaWeights};
 use crate::image::{Image, PixelData};
+use crate::resample::for_rows;
 use crate::wrap::WrapMode;
 use tenfold_math::ops;
 use tenfold_math::{Vec2, Vec3};
@@ -237,18 +238,18 @@ impl Image {
         let (w, h) = ((width / 2).max(1), (height / 2).max(1));
         let (dx, dy) = (u32::from(width > 1), u32::from(height > 1));
         let channels = self.channels().len();
-        let mut values = Vec::with_capacity(w as usize * h as usize * channels);
-        for y in 0..h {
-            for x in 0..w {
+        let mut values = vec![0.0; w as usize * h as usize * channels];
+        for_rows(&mut values, w as usize * channels, |y, row| {
+            for (x, texel) in row.chunks_exact_mut(channels).enumerate() {
                 // Where a side is one already, 2x = 0 and both columns are the same.
-                let (x, y) = (2 * x, 2 * y);
-                for c in 0..channels {
+                let (x, y) = (2 * x as u32, 2 * y as u32);
+                for (c, value) in texel.iter_mut().enumerate() {
                     let top = self.get(x, y, c) + self.get(x + dx, y, c);
                     let bottom = self.get(x, y + dy, c) + self.get(x + dx, y + dy, c);
-                    values.push(0.25 * (top + bottom));
+                    *value = 0.25 * (top + bottom);
                 }
             }
-        }
+        });
         Image::from_f32(w, h, self.channels().iter().cloned(), values)
     }
 }

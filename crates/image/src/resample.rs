@@ -3,6 +3,7 @@
 use crate::error::ImageErrorKind;
 use crate::image::Image;
 use crate::wrap::WrapMode;
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use tenfold_math::ops;
 
@@ -44,6 +45,17 @@ fn taps(old: u32, new: u32) -> Vec<Taps> {
         .collect()
 }
 
+/// Fills the rows of an image, each of `length` values, by all threads: `fill` is given the row's number.
+pub(crate) fn for_rows(values: &mut [f32], length: usize, fill: impl Fn(usize, &mut [f32]) + Send + Sync) {
+    // No row has no values: sides of zero are refused when the image is made of them.
+    let rows_of_a_piece = (1 << 14) / length.max(1) + 1;
+    values
+        .par_chunks_mut(length.max(1))
+        .with_min_len(rows_of_a_piece)
+        .enumerate()
+        .for_each(|(y, row)| fill(y, row));
+}
+
 impl Image {
     /// The picture at another size, as floats: enlarged by a Lanczos filter, with what `wrap` puts beyond the edges, or
     /// reduced to the means over what each pixel covers.
@@ -59,24 +71,26 @@ impl Image {
         let first = rows.iter().map(|t| t.first).min().unwrap_or(0);
         let last = rows.iter().map(|t| t.first + t.weights.len() as i32).max().unwrap_or(0);
         let row_length = width as usize * channels;
-        let mut wide = Vec::with_capacity((last - first) as usize * row_length);
-        for y in first..last {
-            for t in &columns {
-                for c in 0..channels {
+        let mut wide = vec![0.0; (last - first) as usize * row_length];
+        for_rows(&mut wide, row_length, |y, row| {
+            let y = first + y as i32;
+            for (pixel, t) in row.chunks_exact_mut(channels).zip(&columns) {
+                for (c, value) in pixel.iter_mut().enumerate() {
                     let source = (t.first..).zip(&t.weights);
-                    wide.push(source.map(|(x, w)| w * self.get_wrapped(x, y, c, wrap)).sum::<f32>());
+                    *value = source.map(|(x, w)| w * self.get_wrapped(x, y, c, wrap)).sum::<f32>();
                 }
             }
-        }
+        });
         let floor = if self.has_negative() { f32::NEG_INFINITY } else { 0.0 };
-        let mut values = Vec::with_capacity(height as usize * row_length);
-        for t in &rows {
+        let mut values = vec![0.0; height as usize * row_length];
+        for_rows(&mut values, row_length, |y, row| {
+            let t = &rows[y];
             let start = (t.first - first) as usize;
-            for i in 0..row_length {
+            for (i, value) in row.iter_mut().enumerate() {
                 let source = (start..).zip(&t.weights);
-                values.push(source.map(|(y, w)| w * wide[y * row_length + i]).sum::<f32>().max(floor));
+                *value = source.map(|(y, w)| w * wide[y * row_length + i]).sum::<f32>().max(floor);
             }
-        }
+        });
         let mut image = Image::from_f32(width, height, self.channels().iter().cloned(), values)?;
         image.metadata.chromaticities = self.metadata.chromaticities;
         Ok(image)

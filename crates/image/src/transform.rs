@@ -4,6 +4,7 @@ use crate::encoding::{ColorEncoding, DecodeTable};
 use crate::error::ImageErrorKind;
 use crate::image::{Image, PixelData};
 use half::f16;
+use rayon::prelude::*;
 
 /// The values at `indices`, in their order.
 fn gather<T: Copy>(values: &[T], indices: impl Iterator<Item = usize>) -> Vec<T> {
@@ -146,30 +147,30 @@ impl Image {
 
     /// The image with linear float values.
     pub fn to_f32(&self) -> Image {
-        let n = self.channels().len();
-        let count = self.width() as usize * self.height() as usize * n;
-        let values = (0..count).map(|i| self.value(i, i % n)).collect();
-        self.with_data(PixelData::F32(values))
+        self.with_data(PixelData::F32(self.mapped(|v, _| v)))
     }
 
     /// The image with half float values.
     pub fn to_f16(&self) -> Image {
-        let n = self.channels().len();
-        let count = self.width() as usize * self.height() as usize * n;
-        let values = (0..count).map(|i| f16::from_f32(self.value(i, i % n))).collect();
-        self.with_data(PixelData::F16(values))
+        self.with_data(PixelData::F16(self.mapped(|v, _| f16::from_f32(v))))
     }
 
     /// The image with 8-bit codes, each the nearest to its value. Opacity is encoded linearly.
     pub fn to_u8(&self, encoding: ColorEncoding) -> Image {
-        let n = self.channels().len();
-        let count = self.width() as usize * self.height() as usize * n;
-        let code = |i: usize| {
-            let linear = self.alpha_channel() == Some(i % n);
-            let encoding = if linear { ColorEncoding::Linear } else { encoding };
-            encoding.encode_u8(self.value(i, i % n))
+        let alpha = self.alpha_channel();
+        let code = |v: f32, channel: usize| {
+            let encoding = if alpha == Some(channel) { ColorEncoding::Linear } else { encoding };
+            encoding.encode_u8(v)
         };
-        self.with_data(PixelData::U8((0..count).map(code).collect(), DecodeTable::new(encoding)))
+        self.with_data(PixelData::U8(self.mapped(code), DecodeTable::new(encoding)))
+    }
+
+    /// What `map` makes of every value and the number of its channel, computed by all threads.
+    fn mapped<T: Send>(&self, map: impl Fn(f32, usize) -> T + Send + Sync) -> Vec<T> {
+        let channels = self.channels().len();
+        let count = self.width() as usize * self.height() as usize * channels;
+        let value = |i: usize| map(self.value(i, i % channels), i % channels);
+        (0..count).into_par_iter().with_min_len(1 << 14).map(value).collect()
     }
 }
 

@@ -4,8 +4,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Where the files that a scene names come from: the file system, or what a program carries along.
-pub trait Resources {
+/// Where the files that a scene names come from: the file system, or what a program carries along. Several are asked
+/// for at once.
+pub trait Resources: Sync {
     /// The bytes of a file, as they are stored (see [`unpack`]).
     ///
     /// # Errors
@@ -58,10 +59,36 @@ impl Resources for FileResources {
 
 /// Reads a regular file: devices and pipes may never end.
 pub(crate) fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
         return Err(io::Error::other("not a regular file"));
     }
+    #[cfg(unix)]
+    if metadata.len() > READ_AT_ONCE as u64
+        && let Ok(size) = usize::try_from(metadata.len())
+    {
+        return read_in_parts(path, size);
+    }
     std::fs::read(path)
+}
+
+/// Larger files are read in parts of this size, in bytes, by all threads: most of the time goes into memory that is used for the
+/// first time.
+#[cfg(unix)]
+const READ_AT_ONCE: usize = 8 << 20;
+
+#[cfg(unix)]
+fn read_in_parts(path: &Path, size: usize) -> io::Result<Vec<u8>> {
+    use rayon::prelude::*;
+    use std::os::unix::fs::FileExt;
+
+    let file = std::fs::File::open(path)?;
+    let mut bytes = vec![0; size];
+    bytes
+        .par_chunks_mut(READ_AT_ONCE)
+        .enumerate()
+        .try_for_each(|(i, part)| file.read_exact_at(part, (i * READ_AT_ONCE) as u64))?;
+    Ok(bytes)
 }
 
 /// Files that the program carries along, by name.
@@ -127,6 +154,17 @@ mod tests {
         let mut damaged = packed(b"hello");
         damaged.truncate(12);
         assert!(unpack(damaged, 10).is_err());
+    }
+
+    #[test]
+    fn large_files_are_read_in_parts() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large");
+        let bytes: Vec<u8> =
+            (0..20_000_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(FileResources::below(folder.path()).load("large").unwrap() == bytes);
+        assert!(FileResources::below(folder.path()).load(".").is_err());
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub use bilinear_mesh::BilinearMesh;
 pub use triangle_mesh::TriangleMesh;
 pub(crate) use triangle_mesh::is_degenerate;
 
+use rayon::prelude::*;
 use tenfold_math::{Transform, Vec2, Vec3};
 
 /// What a mesh is made from, still in object space.
@@ -94,9 +95,14 @@ impl MeshParts {
                 return Err(MeshError::AttributeCount { attribute, count, expected });
             }
         }
-        if let Some(at) = self.indices.iter().position(|&i| i as usize >= vertices) {
+        if let Some(at) = first(&self.indices, |&i| i as usize >= vertices) {
             return Err(MeshError::IndexOutOfRange { at, index: self.indices[at], vertices });
         }
+        self.check_finite()
+    }
+
+    /// Refuses values that are not finite.
+    fn check_finite(&self) -> Result<(), MeshError> {
         finite("positions", &self.positions, |p| p.is_finite())?;
         finite("normals", self.normals.as_deref().unwrap_or(&[]), |n| n.is_finite())?;
         finite("tangents", self.tangents.as_deref().unwrap_or(&[]), |s| s.is_finite())?;
@@ -105,10 +111,10 @@ impl MeshParts {
 
     /// The parts mapped by `to_world`. Normals turn around with reversed orientation, as pbrt has it.
     pub(crate) fn transformed(mut self, to_world: &Transform, reverse_orientation: bool) -> Self {
-        self.positions.iter_mut().for_each(|p| *p = to_world.point(*p));
         let sign = if reverse_orientation { -1.0 } else { 1.0 };
-        self.normals.iter_mut().flatten().for_each(|n| *n = sign * to_world.normal(*n));
-        self.tangents.iter_mut().flatten().for_each(|s| *s = to_world.vector(*s));
+        each(&mut self.positions, |p| to_world.point(p));
+        each(self.normals.as_deref_mut().unwrap_or_default(), |n| sign * to_world.normal(n));
+        each(self.tangents.as_deref_mut().unwrap_or_default(), |s| to_world.vector(s));
         self
     }
 }
@@ -130,7 +136,7 @@ impl<const N: usize> Mesh<N> {
     pub fn new(parts: MeshParts, to_world: &Transform, reverse_orientation: bool) -> Result<Self, MeshError> {
         parts.validate(N)?;
         let parts = parts.transformed(to_world, reverse_orientation);
-        parts.validate(N)?;
+        parts.check_finite()?;
         Ok(Self { parts, flip: reverse_orientation ^ to_world.swaps_handedness() })
     }
 
@@ -184,9 +190,26 @@ impl<const N: usize> Mesh<N> {
     }
 }
 
-fn finite<T>(attribute: &'static str, values: &[T], is_finite: impl Fn(&T) -> bool) -> Result<(), MeshError> {
-    match values.iter().position(|v| !is_finite(v)) {
+fn finite<T: Sync>(
+    attribute: &'static str,
+    values: &[T],
+    is_finite: impl Fn(&T) -> bool + Send + Sync,
+) -> Result<(), MeshError> {
+    match first(values, |v| !is_finite(v)) {
         Some(at) => Err(MeshError::NotFinite { attribute, at }),
         None => Ok(()),
     }
+}
+
+/// Values in one piece of work, at least: meshes are mostly small, but some have millions of vertices.
+const GRAIN: usize = 1 << 14;
+
+/// Where the first value is that a predicate holds for.
+fn first<T: Sync>(values: &[T], holds: impl Fn(&T) -> bool + Send + Sync) -> Option<usize> {
+    values.par_iter().with_min_len(GRAIN).position_first(holds)
+}
+
+/// Maps all values.
+fn each(values: &mut [Vec3], map: impl Fn(Vec3) -> Vec3 + Send + Sync) {
+    values.par_iter_mut().with_min_len(GRAIN).for_each(|v| *v = map(*v));
 }

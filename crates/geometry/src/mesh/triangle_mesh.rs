@@ -20,9 +20,9 @@ impl TriangleMesh {
         self.parts.tangents.as_ref().map(|s| self.at_corners(triangle, s))
     }
 
-    /// How many triangles have no area: no ray can hit them.
-    pub fn degenerate_count(&self) -> usize {
-        (0..self.len()).filter(|&i| is_degenerate(self.positions(i))).count()
+    /// Whether no triangle has any area: no ray can hit them.
+    pub fn has_no_area(&self) -> bool {
+        (0..self.len()).all(|i| is_degenerate(self.positions(i)))
     }
 }
 

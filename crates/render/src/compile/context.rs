@@ -1,9 +1,13 @@
 //! Shared state of the compile step: diagnostics, files and colours.
 
+use super::mesh_files::MeshFiles;
 use crate::texture::SpectrumRole;
+use rayon::prelude::*;
 use std::{collections::HashMap, path::PathBuf, sync::Arc};
 use tenfold_image::{ColorEncoding, Format, Image};
-use tenfold_scene::{ColorSpace, Diagnostic, Diagnostics, Resources, Span, SpectrumValue, unpack};
+use tenfold_scene::{
+    ColorSpace, Diagnostic, Diagnostics, ParamSet, ParamValues, Resources, Span, SpectrumValue, unpack,
+};
 use tenfold_spectrum::{
     Blackbody, PiecewiseLinear, Rgb, RgbAlbedo, RgbColorSpace, RgbIlluminant, RgbUnbounded, Spectrum, named,
     named_names, parse_spd,
@@ -12,8 +16,11 @@ use tenfold_spectrum::{
 /// Files are unpacked up to this size, in bytes: far above any sane scene's, far below what stops a machine.
 pub(crate) const LARGEST_FILE: u64 = 16 << 30;
 
-/// An image file as it was asked for: path and encoding of 8-bit values.
+/// An image file as it was asked for: which file, and the encoding of 8-bit values.
 type ImageKey = (PathBuf, String);
+
+/// What came of reading an image: the image, or what is to be told, or nothing any more where that has been told.
+type ReadImage = Result<Arc<Image>, Option<String>>;
 
 /// Shared state of the compile step.
 pub(crate) struct Context<'a> {
@@ -21,13 +28,21 @@ pub(crate) struct Context<'a> {
     pub(crate) diagnostics: &'a Diagnostics,
     /// Where files come from.
     pub(crate) resources: &'a dyn Resources,
-    images: HashMap<ImageKey, Option<Arc<Image>>>,
+    images: HashMap<ImageKey, ReadImage>,
     spectra: HashMap<PathBuf, Option<PiecewiseLinear>>,
+    /// The mesh files, once they have been read.
+    pub(super) meshes: MeshFiles,
 }
 
 impl<'a> Context<'a> {
     pub(crate) fn new(diagnostics: &'a Diagnostics, resources: &'a dyn Resources) -> Self {
-        Self { diagnostics, resources, images: HashMap::new(), spectra: HashMap::new() }
+        Self {
+            diagnostics,
+            resources,
+            images: HashMap::new(),
+            spectra: HashMap::new(),
+            meshes: MeshFiles::default(),
+        }
     }
 
     /// Reports a thing that pbrt-v4 has and tenfold does not have yet.
@@ -47,18 +62,6 @@ impl<'a> Context<'a> {
         self.diagnostics.push(Diagnostic::error(span, message).with_nearest(kind, known));
     }
 
-    /// The bytes of a file, unpacked, named at `span`.
-    pub(crate) fn file(&self, path: &str, span: Span) -> Option<Vec<u8>> {
-        match self.resources.load(path).and_then(|bytes| unpack(bytes, LARGEST_FILE)) {
-            Ok(bytes) => Some(bytes),
-            Err(error) => {
-                let place = self.resources.resolve(path);
-                self.diagnostics.error(span, format!("cannot read \"{}\": {error}", place.display()));
-                None
-            }
-        }
-    }
-
     /// The image of a file named at `span`, its 8-bit values in `encoding`, or what the file says. Each file is read
     /// once, and a fault reported once.
     pub(crate) fn image(
@@ -67,22 +70,31 @@ impl<'a> Context<'a> {
         span: Span,
         encoding: Option<ColorEncoding>,
     ) -> Option<Arc<Image>> {
-        let key = (self.resources.resolve(path), format!("{encoding:?}"));
-        if let Some(known) = self.images.get(&key) {
-            return known.clone();
-        }
-        let image = self.file(path, span).and_then(|bytes| {
-            let hint = Format::from_path(path).ok();
-            match Image::read_bytes(&bytes, hint, encoding) {
-                Ok(image) => Some(Arc::new(image)),
-                Err(error) => {
-                    self.diagnostics.error(span, format!("cannot read the image \"{path}\": {error}"));
-                    None
+        let resources = self.resources;
+        let read = self
+            .images
+            .entry(image_key(resources, path, encoding))
+            .or_insert_with(|| read_image(resources, path, encoding).map_err(Some));
+        match read {
+            Ok(image) => Some(image.clone()),
+            Err(untold) => {
+                if let Some(message) = untold.take() {
+                    self.diagnostics.error(span, message);
                 }
+                None
             }
-        });
-        self.images.insert(key, image.clone());
-        image
+        }
+    }
+
+    /// Reads images that will be asked for, several at once.
+    pub(crate) fn read_images<'n>(&mut self, files: impl Iterator<Item = (&'n str, Option<ColorEncoding>)>) {
+        let resources = self.resources;
+        let wanted: HashMap<ImageKey, _> =
+            files.map(|(path, encoding)| (image_key(resources, path, encoding), (path, encoding))).collect();
+        let read = wanted
+            .into_par_iter()
+            .map(|(key, (path, encoding))| (key, read_image(resources, path, encoding).map_err(Some)));
+        self.images.par_extend(read);
     }
 
     /// The spectrum that a parameter stands for. Faults are reported.
@@ -146,6 +158,37 @@ impl<'a> Context<'a> {
         self.spectra.insert(place, spectrum.clone());
         spectrum.map(Spectrum::PiecewiseLinear)
     }
+}
+
+fn image_key(resources: &dyn Resources, path: &str, encoding: Option<ColorEncoding>) -> ImageKey {
+    (resources.identity(path), format!("{encoding:?}"))
+}
+
+/// The image of a file, or what is wrong with it.
+fn read_image(
+    resources: &dyn Resources,
+    path: &str,
+    encoding: Option<ColorEncoding>,
+) -> Result<Arc<Image>, String> {
+    let bytes = read_file(resources, path)?;
+    let image = Image::read_bytes(&bytes, Format::from_path(path).ok(), encoding);
+    image.map(Arc::new).map_err(|error| format!("cannot read the image \"{path}\": {error}"))
+}
+
+/// The first string of a parameter, without a check of its type or number: for what is read ahead of the check.
+pub(super) fn string_of<'p>(params: &'p ParamSet, name: &str) -> Option<&'p str> {
+    match &params.get(name)?.values {
+        ParamValues::Strings(strings) => strings.first().map(String::as_str),
+        _ => None,
+    }
+}
+
+/// The bytes of a file, unpacked, or why it cannot be read.
+pub(super) fn read_file(resources: &dyn Resources, path: &str) -> Result<Vec<u8>, String> {
+    resources
+        .load(path)
+        .and_then(|bytes| unpack(bytes, LARGEST_FILE))
+        .map_err(|error| format!("cannot read \"{}\": {error}", resources.resolve(path).display()))
 }
 
 /// The colour space of a scene file's name for it.

@@ -4,7 +4,7 @@ use super::context::Context;
 use std::sync::Arc;
 use tenfold_geometry::{BilinearMesh, MeshError, MeshParts, Shape, TriangleMesh, loop_subdivide};
 use tenfold_math::Transform;
-use tenfold_scene::{ParamType, Params, PlyMesh, read_ply};
+use tenfold_scene::{ParamType, Params, PlyMesh};
 
 /// Each level quarters every triangle: more of them fit no memory.
 const MOST_LEVELS: i32 = 12;
@@ -51,7 +51,7 @@ pub(super) fn loop_subdivision(params: &Params<'_>, place: &Transform, reverse: 
 }
 
 pub(super) fn ply_mesh(
-    cx: &Context<'_>,
+    cx: &mut Context<'_>,
     params: &Params<'_>,
     place: &Transform,
     reverse: bool,
@@ -68,14 +68,14 @@ pub(super) fn ply_mesh(
         return Vec::new();
     };
     let span = params.span_of("filename");
-    let Some(bytes) = cx.file(name, span) else { return Vec::new() };
-    let PlyMesh { positions, normals, uvs, triangles, quads, mut face_indices } = match read_ply(&bytes) {
-        Ok(mesh) => mesh,
-        Err(error) => {
-            cx.diagnostics.error(span, format!("in \"{name}\": {error}"));
-            return Vec::new();
-        }
-    };
+    let resources = cx.resources;
+    let shapes = cx.meshes.shapes(resources, name, place, reverse, |mesh| ply_shapes(mesh, place, reverse));
+    shapes.map_err(|message| cx.diagnostics.error(span, message)).unwrap_or_default()
+}
+
+/// The triangles and the quadrilaterals of a file.
+pub(super) fn ply_shapes(mesh: PlyMesh, place: &Transform, reverse: bool) -> Result<Vec<Shape>, MeshError> {
+    let PlyMesh { positions, normals, uvs, triangles, quads, mut face_indices } = mesh;
     let quad_faces = face_indices.split_off(triangles.len().min(face_indices.len()));
     let mut vertices = MeshParts {
         positions,
@@ -92,14 +92,13 @@ pub(super) fn ply_mesh(
         // The vertices are shared by both parts: each gets its own, for the rare mesh that has both.
         let own = if quads.is_empty() { std::mem::take(&mut vertices) } else { vertices.clone() };
         let parts = with_faces(own, triangles.into_flattened(), face_indices);
-        shapes.push(TriangleMesh::new(parts, place, reverse).map(|mesh| Shape::Triangles(Arc::new(mesh))));
+        shapes.push(Shape::Triangles(Arc::new(TriangleMesh::new(parts, place, reverse)?)));
     }
     if !quads.is_empty() {
         let parts = with_faces(vertices, quads.into_flattened(), quad_faces);
-        shapes.push(BilinearMesh::new(parts, place, reverse).map(|mesh| Shape::Patches(Arc::new(mesh))));
+        shapes.push(Shape::Patches(Arc::new(BilinearMesh::new(parts, place, reverse)?)));
     }
-    let fault = |error| cx.diagnostics.error(span, format!("in \"{name}\": {error}"));
-    shapes.into_iter().filter_map(|shape: Result<Shape, MeshError>| shape.map_err(fault).ok()).collect()
+    Ok(shapes)
 }
 
 /// Positions, texture coordinates and indices; where there are none of these, but as many vertices as one primitive has,

@@ -10,6 +10,7 @@ mod film;
 mod light;
 mod material;
 mod mesh;
+mod mesh_files;
 mod mover;
 mod settings;
 mod shape;
@@ -46,6 +47,7 @@ pub fn compile(
     };
 
     let mut textures = TextureLibrary::new(description);
+    textures.read_images(cx);
     let materials = material::compile_materials(cx, description, &mut textures);
     let mut lights: Vec<_> =
         description.lights.iter().filter_map(|entity| light::compile_light(cx, entity)).collect();

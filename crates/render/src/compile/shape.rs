@@ -4,6 +4,7 @@ use super::{
     context::Context,
     light::{AreaEmitter, compile_area_light},
     mesh,
+    mesh_files::MeshFiles,
     mover::find_movers,
     texture::TextureLibrary,
 };
@@ -43,6 +44,7 @@ impl Shapes {
         textures: &mut TextureLibrary<'s>,
         lights: &mut Vec<Light>,
     ) -> Self {
+        cx.meshes = MeshFiles::read(description, cx.resources);
         let mut compiler = Compiler {
             cx,
             description,
@@ -233,7 +235,7 @@ impl Compiler<'_, '_, '_> {
 fn has_no_area(shape: &Shape) -> bool {
     match shape {
         Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => false,
-        Shape::Triangles(mesh) => !mesh.is_empty() && mesh.degenerate_count() == mesh.len(),
+        Shape::Triangles(mesh) => !mesh.is_empty() && mesh.has_no_area(),
         Shape::Patches(mesh) => !mesh.is_empty() && (0..mesh.len()).all(|i| shape.primitive(i).area() == 0.0),
     }
 }

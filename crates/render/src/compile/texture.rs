@@ -1,6 +1,6 @@
 //! Textures from their descriptions.
 
-use std::{collections::HashMap, sync::Arc};
+use std::{collections::HashMap, path::PathBuf, sync::Arc};
 
 use tenfold_image::{ColorEncoding, Pyramid, TextureFilter, WrapMode};
 use tenfold_math::{Transform, Vec2, Vec3};
@@ -10,7 +10,7 @@ use tenfold_scene::{
 };
 use tenfold_spectrum::{LAMBDA_MAX, LAMBDA_MIN, PiecewiseLinear, Spectrum};
 
-use super::context::Context;
+use super::context::{Context, string_of};
 use crate::texture::{
     Bilerp, Board, Checkerboard, DirectionMix, Dots, Fbm, FloatSlot, FloatTexture, ImageMap, Mapping2,
     Mapping3, Marble, Mix, Scale, SpectrumImageMap, SpectrumRole, SpectrumSlot, SpectrumTexture, Textures,
@@ -44,7 +44,8 @@ pub(crate) struct TextureLibrary<'s> {
     by_name: HashMap<(TextureValue, &'s str), usize>,
     floats: HashMap<usize, State<FloatSlot>>,
     spectra: HashMap<(usize, SpectrumRole), State<SpectrumSlot>>,
-    pyramids: HashMap<String, Option<Arc<Pyramid>>>,
+    /// By file, and by encoding and wrapping.
+    pyramids: HashMap<(PathBuf, String), Option<Arc<Pyramid>>>,
     textures: Textures,
     /// How many textures are being compiled, one for the sake of the other.
     depth: usize,
@@ -73,6 +74,18 @@ impl<'s> TextureLibrary<'s> {
             textures: Textures::default(),
             depth: 0,
         }
+    }
+
+    /// Reads the images of all textures: several at once, before the textures are compiled one after the other.
+    pub(crate) fn read_images(&self, cx: &mut Context<'_>) {
+        let maps = self.entities.iter().map(|texture| &texture.entity).filter(|e| e.kind == "imagemap");
+        cx.read_images(maps.filter_map(|entity| {
+            let encoding = match string_of(&entity.params, "encoding") {
+                None => None,
+                Some(name) => Some(encoding(name)?),
+            };
+            Some((string_of(&entity.params, "filename")?, encoding))
+        }));
     }
 
     /// All textures that were asked for. Those that were not are checked all the same.
@@ -468,7 +481,7 @@ impl<'s> TextureLibrary<'s> {
         let span = params.span_of("filename");
         let image = cx.image(filename, span, encoding)?;
         let color_space = color_space_of(&image.metadata);
-        let key = format!("{filename}\0{encoding:?}\0{wrap:?}");
+        let key = (cx.resources.identity(filename), format!("{encoding:?} {wrap:?}"));
         let pyramid = match self.pyramids.get(&key) {
             Some(known) => known.clone(),
             None => {

@@ -33,7 +33,9 @@ pub(super) fn text_of(bytes: Vec<u8>) -> io::Result<Arc<str>> {
         bytes[..3].fill(b' ');
     }
     // The mark for what is not UTF-8 must have no other source.
-    bytes.iter_mut().filter(|b| **b == NOT_UTF8 as u8).for_each(|b| *b = 0xff);
+    if bytes.contains(&(NOT_UTF8 as u8)) {
+        bytes.iter_mut().filter(|b| **b == NOT_UTF8 as u8).for_each(|b| *b = 0xff);
+    }
     loop {
         match String::from_utf8(bytes) {
             Ok(text) => return Ok(text.into()),

@@ -1,6 +1,6 @@
 //! Tokens of a file and of the files that it includes, as one stream.
 
-use super::number::{parse_float, parse_integer};
+use super::number::{ends_word, parse_float, parse_integer, scan_float, scan_integer};
 use crate::{Diagnostics, FileId, Span};
 use std::{path::PathBuf, sync::Arc};
 
@@ -83,8 +83,7 @@ impl OpenFile {
     /// The end of the word that begins here.
     fn word_end(&self) -> usize {
         let rest = &self.text.as_bytes()[self.position..];
-        let ends = |b: &u8| matches!(b, b' ' | b'\n' | b'\t' | b'\r' | b'"' | b'[' | b']');
-        self.position + rest.iter().position(ends).unwrap_or(rest.len())
+        self.position + rest.iter().position(|b| ends_word(Some(b))).unwrap_or(rest.len())
     }
 
     fn next(&mut self, diagnostics: &Diagnostics) -> Option<Token> {
@@ -151,11 +150,29 @@ impl OpenFile {
         Token { kind: TokenKind::String, text, span, broken }
     }
 
-    /// Takes values as long as the words that follow can be read.
-    fn take_while<T>(&mut self, values: &mut Vec<T>, read: impl Fn(&str) -> Option<T>) {
+    /// Takes values as long as the words that follow can be read: by `scan`, which is given the text from there and
+    /// tells the length of the word it has read, or else by `read`.
+    fn take_while<T>(
+        &mut self,
+        values: &mut Vec<T>,
+        scan: impl Fn(&[u8]) -> Option<(T, usize)>,
+        read: impl Fn(&str) -> Option<T>,
+    ) {
         while let Some(first) = self.skip_blanks() {
             if matches!(first, b'"' | b'[' | b']') {
                 return;
+            }
+            // Mostly one blank stands between numbers that are quick to read.
+            let bytes = self.text.as_bytes();
+            let mut at = self.position;
+            while let Some((value, length)) = scan(&bytes[at..]) {
+                values.push(value);
+                at += length;
+                at += usize::from(matches!(bytes.get(at), Some(b' ' | b'\n')));
+            }
+            if at > self.position {
+                self.position = at;
+                continue;
             }
             let end = self.word_end();
             let Some(value) = read(&self.text[self.position..end]) else { return };
@@ -222,14 +239,14 @@ impl Stream {
     /// Takes all floats up to the first token that is none, or to the end of the file.
     pub(super) fn take_floats(&mut self, values: &mut Vec<f32>) {
         if let (None, Some(file)) = (&self.held, self.files.last_mut()) {
-            file.take_while(values, |word| parse_float(word).ok());
+            file.take_while(values, scan_float, |word| parse_float(word).ok());
         }
     }
 
     /// Takes all integers up to the first token that is none, or to the end of the file.
     pub(super) fn take_integers(&mut self, values: &mut Vec<i32>) {
         if let (None, Some(file)) = (&self.held, self.files.last_mut()) {
-            file.take_while(values, |word| parse_integer(word).ok());
+            file.take_while(values, scan_integer, |word| parse_integer(word).ok());
         }
     }
 }

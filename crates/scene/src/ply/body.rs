@@ -2,8 +2,10 @@
 
 use super::{
     PlyError, PlyMesh,
+    bulk::{Faces, Field, Items, layout},
     header::{Element, Format, Header, Property, Scalar},
 };
+use rayon::prelude::*;
 use tenfold_math::{Vec2, Vec3};
 
 /// The names that texture coordinates go by; the first pair found counts.
@@ -75,6 +77,24 @@ fn read_vertices<S: Source>(source: &mut S, element: &Element, mesh: &mut PlyMes
         return Err(PlyError::WrongShape(p.name.clone()));
     }
 
+    if let Some((fields, stride)) = layout(element)
+        && let Some(items) = source.items(element.count, stride)
+    {
+        let slot = |slot: usize| -> Field {
+            fields[slots.iter().position(|s| *s == Some(slot)).unwrap_or_default()]
+        };
+        mesh.positions = items.vectors([slot(0), slot(1), slot(2)]);
+        if has_normals {
+            mesh.normals = items.vectors([slot(3), slot(4), slot(5)]);
+        }
+        if uv.is_some() {
+            mesh.uvs = items.vectors([slot(6), slot(7)]);
+        }
+        let size = items.size();
+        source.pass(size);
+        return finite(mesh);
+    }
+
     let count = element.count as usize;
     mesh.positions.reserve_exact(count);
     mesh.normals.reserve_exact(if has_normals { count } else { 0 });
@@ -103,6 +123,17 @@ fn read_vertices<S: Source>(source: &mut S, element: &Element, mesh: &mut PlyMes
     Ok(())
 }
 
+/// Refuses vertices that are not finite.
+fn finite(mesh: &PlyMesh) -> Result<(), PlyError> {
+    let positions = mesh.positions.par_iter().position_first(|v| !v.is_finite());
+    let normals = mesh.normals.par_iter().position_first(|v| !v.is_finite());
+    let uvs = mesh.uvs.par_iter().position_first(|v| !v.is_finite());
+    match [positions, normals, uvs].into_iter().flatten().min() {
+        Some(first) => Err(PlyError::NotFinite(first as u64)),
+        None => Ok(()),
+    }
+}
+
 fn read_faces<S: Source>(
     source: &mut S,
     element: &Element,
@@ -121,6 +152,25 @@ fn read_faces<S: Source>(
             return Err(PlyError::WrongShape(p.name.clone()));
         }
     }
+    // Most meshes have triangles alone, or quadrilaterals alone.
+    for n in [3, 4] {
+        if let Some(faces) = Faces::new(element, corners, number, n)
+            && let Some(items) = source.items(element.count, faces.stride)
+            && faces.fit(&items, n)
+        {
+            if n == 3 {
+                mesh.triangles = faces.corners(&items, vertices)?;
+            } else {
+                mesh.quads = faces.corners(&items, vertices)?;
+                mesh.quads.par_iter_mut().for_each(|face| face.swap(2, 3));
+            }
+            mesh.face_indices = faces.numbers(&items);
+            let size = items.size();
+            source.pass(size);
+            return Ok(());
+        }
+    }
+
     mesh.triangles.reserve(element.count as usize);
     let mut quad_numbers = Vec::new();
     for index in 0..element.count {
@@ -194,6 +244,12 @@ trait Source {
     /// How many bytes are left.
     fn remaining(&self) -> usize;
 
+    /// The next items of `stride` bytes each: none where they are no bytes, or too few.
+    fn items(&self, count: u64, stride: usize) -> Option<Items<'_>>;
+
+    /// Passes over bytes, of which as many must be there.
+    fn pass(&mut self, bytes: usize);
+
     /// The next number, as a float.
     fn float(&mut self, scalar: Scalar) -> Result<f32, Fault>;
 
@@ -225,6 +281,14 @@ impl<const BIG: bool> Binary<'_, BIG> {
 impl<const BIG: bool> Source for Binary<'_, BIG> {
     fn remaining(&self) -> usize {
         self.data.len()
+    }
+
+    fn items(&self, count: u64, stride: usize) -> Option<Items<'_>> {
+        Items::new(self.data, count, stride, BIG)
+    }
+
+    fn pass(&mut self, bytes: usize) {
+        self.data = &self.data[bytes..];
     }
 
     #[inline]
@@ -286,6 +350,14 @@ impl<'a> Ascii<'a> {
 impl Source for Ascii<'_> {
     fn remaining(&self) -> usize {
         self.data.len()
+    }
+
+    fn items(&self, _: u64, _: usize) -> Option<Items<'_>> {
+        None
+    }
+
+    fn pass(&mut self, bytes: usize) {
+        self.data = &self.data[bytes..];
     }
 
     fn float(&mut self, _: Scalar) -> Result<f32, Fault> {

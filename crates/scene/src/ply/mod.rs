@@ -1,6 +1,7 @@
 //! The reader of the PLY format for meshes (G. Turk, "The PLY Polygon File Format", 1994), as far as pbrt's `plymesh` goes.
 
 mod body;
+mod bulk;
 mod header;
 
 use std::borrow::Cow;

@@ -188,3 +188,119 @@ fn claims_beyond_the_file_are_refused_before_memory_is_taken() {
         assert!(read_ply(&whole[..end]).is_err(), "{end}");
     }
 }
+
+/// A number in the types that PLY files have.
+fn number(scalar: &str, v: f64, big: bool) -> Vec<u8> {
+    let mut bytes = match scalar {
+        "char" => (v as i8).to_le_bytes().to_vec(),
+        "uchar" => (v as u8).to_le_bytes().to_vec(),
+        "short" => (v as i16).to_le_bytes().to_vec(),
+        "ushort" => (v as u16).to_le_bytes().to_vec(),
+        "int" => (v as i32).to_le_bytes().to_vec(),
+        "uint" => (v as u32).to_le_bytes().to_vec(),
+        "float" => (v as f32).to_le_bytes().to_vec(),
+        _ => v.to_le_bytes().to_vec(),
+    };
+    if big {
+        bytes.reverse();
+    }
+    bytes
+}
+
+/// A strip of faces with as many corners each, in the three formats: ASCII first. `change` may damage one number, given by element, item
+/// and place.
+fn strip(
+    [float, length, index]: [&str; 3],
+    corners: usize,
+    faces: usize,
+    change: impl Fn(&str, usize, usize) -> Option<f64>,
+) -> [Vec<u8>; 3] {
+    let vertices = faces + corners - 1;
+    let header = format!(
+        "element vertex {vertices}\nproperty uchar red\nproperty {float} u\nproperty {float} v\n\
+         property {float} z\nproperty {float} y\nproperty {float} x\nproperty {float} nx\n\
+         property float ny\nproperty double nz\nelement face {faces}\nproperty short face_indices\n\
+         property list {length} {index} vertex_indices\nproperty uchar flags\nend_header\n"
+    );
+    let types = ["uchar", float, float, float, float, float, float, "float", "double"];
+    let mut rows: Vec<Vec<(&str, f64)>> = Vec::new();
+    for i in 0..vertices {
+        let value = |k: usize| change("vertex", i, k).unwrap_or(((i * 7 + k * 3) % 101) as f64);
+        rows.push(types.iter().enumerate().map(|(k, ty)| (*ty, value(k))).collect());
+    }
+    for i in 0..faces {
+        let mut row = vec![("short", (i % 999) as f64), (length, corners as f64)];
+        row.extend((0..corners).map(|k| (index, change("face", i, k).unwrap_or((i + k) as f64))));
+        row.push(("uchar", 1.0));
+        rows.push(row);
+    }
+    let text: Vec<String> =
+        rows.iter().map(|row| row.iter().map(|(_, v)| format!("{v} ")).collect()).collect();
+    let binary = |order: &str, big: bool| {
+        let body = rows.iter().flatten().flat_map(|(ty, v)| number(ty, *v, big));
+        let mut bytes = format!("ply\nformat binary_{order}_endian 1.0\n{header}").into_bytes();
+        bytes.extend(body);
+        bytes
+    };
+    let ascii = format!("ply\nformat ascii 1.0\n{header}{}\n", text.join("\n"));
+    [ascii.into_bytes(), binary("little", false), binary("big", true)]
+}
+
+const TYPES: [[&str; 3]; 5] = [
+    ["float", "uchar", "int"],
+    ["float", "char", "uint"],
+    ["double", "int", "ushort"],
+    ["short", "ushort", "short"],
+    ["uchar", "double", "double"],
+];
+
+#[test]
+fn meshes_read_in_bulk_are_those_read_one_by_one() {
+    for types in TYPES {
+        for corners in [3, 4] {
+            let files = strip(types, corners, 20_000, |_, _, _| None);
+            let mesh = read_ply(&files[0]).unwrap();
+            assert_eq!(mesh.positions[1], Vec3::new(22.0, 19.0, 16.0));
+            assert_eq!((mesh.normals.len(), mesh.uvs.len()), (mesh.positions.len(), mesh.positions.len()));
+            assert_eq!((mesh.triangles.len() + mesh.quads.len(), mesh.face_indices.len()), (20_000, 20_000));
+            for binary in &files[1..] {
+                assert_eq!(read_ply(binary).unwrap(), mesh, "{types:?}");
+                let cut = read_ply(&binary[..binary.len() - 1]).unwrap_err();
+                assert_eq!(cut.to_string(), "the file ends in item 19999 of \"face\"");
+            }
+        }
+    }
+}
+
+#[test]
+fn faults_in_bulk_are_those_found_one_by_one() {
+    let change = |what: &'static str, item: usize, place: usize, value: f64| {
+        move |w: &str, i: usize, k: usize| ((w, i, k) == (what, item, place)).then_some(value)
+    };
+    for corners in [3, 4] {
+        for types in &TYPES[..3] {
+            let vertices = 20_000 + corners - 1;
+            // Two bad ones: the first is named.
+            let bad = |w: &str, i: usize, k: usize| {
+                change("face", 12_345, 2, 30_000.0)(w, i, k).or(change("face", 19_000, 0, 40_000.0)(w, i, k))
+            };
+            for bytes in strip(*types, corners, 20_000, bad) {
+                let message =
+                    format!("face 12345 has the vertex 30000, but there are only {vertices}, counted from 0");
+                assert_eq!(read_ply(&bytes).unwrap_err().to_string(), message);
+            }
+        }
+        for bytes in strip(TYPES[0], corners, 20_000, change("face", 15_000, 1, -1.0)) {
+            assert!(matches!(
+                read_ply(&bytes),
+                Err(PlyError::IndexOutOfRange { face: 15_000, index: -1, .. })
+            ));
+        }
+        // Of a position, a texture coordinate, and a normal.
+        for place in [4, 2, 8] {
+            for bytes in strip(TYPES[0], corners, 20_000, change("vertex", 9_876, place, f64::NAN)) {
+                assert_eq!(read_ply(&bytes), Err(PlyError::NotFinite(9_876)));
+            }
+        }
+    }
+}
