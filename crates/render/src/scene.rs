@@ -48,8 +48,8 @@ pub struct Scene {
 pub struct Surface {
     /// What it is made of.
     pub material: Id<Material>,
-    /// Where it emits: the light that its first primitive is. Those of its other primitives follow.
-    pub first_light: Option<Id<Light>>,
+    /// Where it emits: its lights.
+    pub lights: Option<SurfaceLights>,
     /// Where it is there at all: 1 is there, 0 is a hole, between by chance.
     pub alpha: Option<FloatSlot>,
 }
@@ -58,13 +58,23 @@ impl Surface {
     /// The light that the primitive with this index in its mesh is.
     #[inline]
     pub fn light(&self, primitive: PrimitiveId) -> Option<Id<Light>> {
-        self.first_light.map(|first| Id::new(first.index() + primitive.index as usize))
+        let lights = self.lights?;
+        Some(Id::new(lights.first.index() + (primitive.index / lights.primitives_each) as usize))
     }
 
     /// Whether rays may pass: such primitives ask the filter of the traversal.
     pub fn may_be_passed(&self, materials: &Materials) -> bool {
         self.alpha.is_some() || materials.is_interface(self.material)
     }
+}
+
+/// The lights that the primitives of a surface are, one after another.
+#[derive(Copy, Clone, Debug)]
+pub struct SurfaceLights {
+    /// The light that the first primitive belongs to.
+    pub first: Id<Light>,
+    /// How many consecutive primitives are one light.
+    pub primitives_each: u32,
 }
 
 /// The picture a scene asks for.

@@ -200,11 +200,15 @@ impl<'a> BilinearPatch<'a> {
     }
 
     fn point(&self, uv: Vec2, pdf: f32) -> ShapeSample {
+        self.point_with_normal(uv, self.unit_normal(uv), pdf)
+    }
+
+    fn point_with_normal(&self, uv: Vec2, n: Vec3, pdf: f32) -> ShapeSample {
         let p = self.positions();
         ShapeSample {
             p: bilerp(uv, p),
             p_error: gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
-            n: self.orient(self.unit_normal(uv), uv),
+            n: self.orient(n, uv),
             uv: self.texture_uv(uv),
             param: uv,
             pdf,
@@ -245,6 +249,13 @@ impl<'a> BilinearPatch<'a> {
             .filter(|r| r.solid_angle() > MIN_SPHERICAL_AREA)
     }
 
+    /// The parameters of a point of a rectangle, which may also be known as a point of triangles that cover it.
+    fn place_in_rectangle(&self, p: Vec3) -> Vec2 {
+        let [p00, p10, p01, _] = self.positions();
+        let along = |edge: Vec3| ((p - p00).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+        Vec2::new(along(p10 - p00), along(p01 - p00))
+    }
+
     fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
         let to_corner = self.positions().map(|p| (p - reference.p).normalize_or_zero());
         cosine_weights(reference, to_corner)
@@ -260,7 +271,7 @@ impl<'a> BilinearPatch<'a> {
             u = sample_bilinear(u, weights);
             pdf *= bilinear_pdf(u, weights);
         }
-        Some(self.point(rectangle.sample(u).uv, pdf))
+        Some(self.point_with_normal(rectangle.sample(u).uv, rectangle.normal(), pdf))
     }
 
     pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
@@ -270,7 +281,7 @@ impl<'a> BilinearPatch<'a> {
         if reference.ns == Vec3::ZERO {
             return rectangle.pdf();
         }
-        let u = rectangle.invert(point.param);
+        let u = rectangle.invert(self.place_in_rectangle(point.p));
         rectangle.pdf() * bilinear_pdf(u, self.corner_weights(reference))
     }
 }

@@ -13,10 +13,10 @@ use crate::{
     light::Light,
     material::{Material, Materials},
     movers::Movers,
-    scene::Surface,
+    scene::{Surface, SurfaceLights},
     texture::FloatSlot,
 };
-use std::{collections::HashMap, f32::consts::TAU, sync::Arc};
+use std::{collections::HashMap, f32::consts::TAU};
 use tenfold_geometry::{
     Cylinder, CylinderParams, Disk, DiskParams, Geometry, Group, Instance, Shape, ShapeError, Sphere,
     SphereParams, World, WorldDesc,
@@ -136,8 +136,8 @@ impl Compiler<'_, '_, '_> {
     ) -> Surface {
         let alpha = alpha.filter(|a| a.constant().is_none_or(|a| a < 1.0));
         let material: Id<Material> = Id::new(entity.material.index());
-        let first_light = entity.area_light.and_then(|light| self.emit(light, entity, shape, alpha, moving));
-        Surface { material, first_light, alpha }
+        let lights = entity.area_light.and_then(|light| self.emit(light, entity, shape, alpha, moving));
+        Surface { material, lights, alpha }
     }
 
     fn emit(
@@ -147,7 +147,7 @@ impl Compiler<'_, '_, '_> {
         shape: &Shape,
         alpha: Option<FloatSlot>,
         moving: bool,
-    ) -> Option<Id<Light>> {
+    ) -> Option<SurfaceLights> {
         let emission = &self.description.area_lights[light.index()];
         if moving {
             self.cx.unsupported(entity.entity.span, "an area light on a moving shape");
@@ -163,9 +163,10 @@ impl Compiler<'_, '_, '_> {
         };
         let cx = &mut *self.cx;
         let emitter = self.emitters.entry(light).or_insert_with(|| compile_area_light(cx, emission));
-        let first = self.lights.len();
-        self.lights.extend(emitter.as_ref()?.lights(&Arc::new(shape.clone()), invisible));
-        Some(Id::new(first))
+        let first = Id::new(self.lights.len());
+        let (lights, primitives_each) = emitter.as_ref()?.lights(shape, invisible);
+        self.lights.extend(lights);
+        Some(SurfaceLights { first, primitives_each })
     }
 
     /// The shape, in up to two parts: the triangles and the quadrilaterals of a mesh. `None` for a kind that is not there.

@@ -10,7 +10,6 @@
 //! a digit in eight of the 24 ways; the rest comes from shears, which add the digit's one bit to the other
 //! where bits derived from the digits above say so.
 
-use super::permute::permute;
 use crate::hash::{combine, unit_f32};
 use tenfold_math::Vec2;
 
@@ -86,10 +85,12 @@ impl SobolSample {
     }
 
     /// The place in a block that is not whole, mirrored, where it belongs in the index.
-    #[cold]
-    #[inline(never)]
     fn permuted(&self, key: u64) -> u64 {
-        u64::from(permute(self.place, self.size, key).reverse_bits()) << (32 - self.shift)
+        let mut place = scatter(self.place, self.place_bits, key);
+        while place >= self.size {
+            place = scatter(place, self.place_bits, key);
+        }
+        u64::from(place.reverse_bits()) << (32 - self.shift)
     }
 }
 

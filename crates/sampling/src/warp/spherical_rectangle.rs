@@ -2,9 +2,13 @@ use tenfold_math::ops;
 use tenfold_math::{DVec3, ONE_MINUS_EPSILON, Vec2, Vec3};
 
 /// A rectangle as it is seen from a point, to be sampled uniformly in solid angle (Ureña, Fajardo and King 2013).
+///
+/// The paper's angles between planes appear here as complex numbers: the corner at (x, y) in the plane at z has the number
+/// |z| r + i x y, with r its distance, whose angle is its share of the solid angle. Products of them take the place of sums of arc
+/// cosines.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SphericalRectangle {
-    /// Unit axes: along the edges, and normal with the rectangle on its negative side.
+    /// Unit axes: along the edges, and across with the rectangle on its negative side.
     x: DVec3,
     y: DVec3,
     z: DVec3,
@@ -17,8 +21,8 @@ pub struct SphericalRectangle {
     /// Cosines between the normal and the planes through the point and the edges at y0 and y1.
     b0: f64,
     b1: f64,
-    /// The constant of the azimuthal angle (paper, eq. 8).
-    k: f64,
+    /// Cosine and sine of the constant of the azimuthal angle (paper, eq. 8).
+    k: [f64; 2],
     solid_angle: f64,
 }
 
@@ -47,18 +51,23 @@ impl SphericalRectangle {
         }
         let (x0, y0) = (d.dot(x), d.dot(y));
         let (x1, y1) = (x0 + u.length(), y0 + v.length());
-        let solid_angle = area([x0, x1], [y0, y1], z0);
+        let near = [corner_number(x0, y0, z0), corner_number(x0, y1, z0)];
+        let solid_angle = area(near, [corner_number(x1, y0, z0), corner_number(x1, y1, z0)]);
         if !(solid_angle > 0.0 && solid_angle.is_finite()) {
             return None;
         }
+        // The angles between the planes through the edge at x0 and those at its ends have i times these numbers.
+        let [re, im] = times_conjugate(near[1], near[0]);
+        let scale = -1.0 / (re * re + im * im).sqrt();
+        let k = [re * scale, im * scale];
+        let (b0, b1) = (-y0 / (z0 * z0 + y0 * y0).sqrt(), y1 / (z0 * z0 + y1 * y1).sqrt());
+        Some(Self { x, y, z, x0, x1, y0, y1, z0, b0, b1, k, solid_angle })
+    }
 
-        // Normals of the planes through the point and the edges at y0, y1 and x0 (paper, eq. 4).
-        let n0 = DVec3::new(0.0, z0, -y0).normalize();
-        let n2 = DVec3::new(0.0, -z0, y1).normalize();
-        let n3 = DVec3::new(z0, 0.0, -x0).normalize();
-        let inner = |a: DVec3, b: DVec3| ops::acos((-a.dot(b)).clamp(-1.0, 1.0));
-        let k = std::f64::consts::TAU - inner(n2, n3) - inner(n3, n0);
-        Some(Self { x, y, z, x0, x1, y0, y1, z0, b0: n0.z, b1: n2.z, k, solid_angle })
+    /// The unit cross product of the edges along u and v.
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        self.x.cross(self.y).as_vec3()
     }
 
     /// In steradians.
@@ -77,16 +86,18 @@ impl SphericalRectangle {
     #[inline]
     pub fn sample(&self, u: Vec2) -> RectanglePoint {
         // The edge-parallel line at x for which the part below it has the share u.x of the solid angle (eq. 9 to 13).
-        let (s, c) = ops::sin_cos(f64::from(u.x) * self.solid_angle + self.k);
-        let f = (c * self.b0 - self.b1) / s;
-        let cosine = 1f64.copysign(f) / (f * f + self.b0 * self.b0).sqrt();
-        let cosine = if cosine.is_nan() { 0.0 } else { cosine.clamp(-1.0, 1.0) };
-        let x = -cosine * self.z0 / (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (s, c) = ops::sin_cos(f64::from(u.x) * self.solid_angle);
+        let [cos_k, sin_k] = self.k;
+        let (s, c) = (s * cos_k + c * sin_k, c * cos_k - s * sin_k);
+        let f = c * self.b0 - self.b1;
+        let across = f * f - s * s * (1.0 - self.b0 * self.b0);
+        let x = -self.z0 * s * 1f64.copysign(f) / across.max(0.0).sqrt();
         let x = if x.is_nan() { self.x0 } else { x.clamp(self.x0, self.x1) };
 
         // Along that line the sine of the elevation is uniform (eq. 16 to 18).
-        let d = ops::hypot(x, self.z0);
-        let (h0, h1) = (self.y0 / ops::hypot(d, self.y0), self.y1 / ops::hypot(d, self.y1));
+        let d2 = x * x + self.z0 * self.z0;
+        let sine = |y: f64| y / (d2 + y * y).sqrt();
+        let (d, h0, h1) = (d2.sqrt(), sine(self.y0), sine(self.y1));
         let h = h0 + f64::from(u.y) * (h1 - h0);
         let y = (h * d / (1.0 - h * h).max(0.0).sqrt()).clamp(self.y0, self.y1);
 
@@ -102,17 +113,33 @@ impl SphericalRectangle {
     pub fn invert(&self, uv: Vec2) -> Vec2 {
         let x = self.x0 + f64::from(uv.x) * (self.x1 - self.x0);
         let y = self.y0 + f64::from(uv.y) * (self.y1 - self.y0);
-        let d = ops::hypot(x, self.z0);
-        let sine = |y: f64| y / ops::hypot(d, y);
+        let d2 = x * x + self.z0 * self.z0;
+        let sine = |y: f64| y / (d2 + y * y).sqrt();
         let (h0, h1) = (sine(self.y0), sine(self.y1));
-        let u = area([self.x0, x], [self.y0, self.y1], self.z0) / self.solid_angle;
+        let edge = |x: f64| [corner_number(x, self.y0, self.z0), corner_number(x, self.y1, self.z0)];
+        let u = area(edge(self.x0), edge(x)) / self.solid_angle;
         Vec2::new(u as f32, ((sine(y) - h0) / (h1 - h0)) as f32)
             .clamp(Vec2::ZERO, Vec2::splat(ONE_MINUS_EPSILON))
     }
 }
 
-/// Solid angle of the rectangle of these ranges in the plane at `z`.
-fn area(x: [f64; 2], y: [f64; 2], z: f64) -> f64 {
-    let corner = |x: f64, y: f64| ops::atan2(x * y, z.abs() * (x * x + y * y + z * z).sqrt());
-    corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0])
+/// The number of a corner: see [`SphericalRectangle`].
+#[inline]
+fn corner_number(x: f64, y: f64, z: f64) -> [f64; 2] {
+    [z.abs() * (x * x + y * y + z * z).sqrt(), x * y]
+}
+
+/// The product of a complex number and the conjugate of another.
+#[inline]
+fn times_conjugate([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    [a * c + b * d, b * c - a * d]
+}
+
+/// Solid angle of the rectangle whose edges at x0 and x1 have these corners, at y0 and y1: the angle of a product.
+#[inline]
+fn area(near: [[f64; 2]; 2], far: [[f64; 2]; 2]) -> f64 {
+    let [re, im] = times_conjugate(times_conjugate(far[1], far[0]), times_conjugate(near[1], near[0]));
+    let angle = ops::atan2(im, re);
+    // Sums above π come out negative, and so do zeros by rounding.
+    if angle < -1e-6 { angle + std::f64::consts::TAU } else { angle }
 }

@@ -86,10 +86,19 @@ fn area_emitter(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity) -> Option
 }
 
 impl AreaEmitter {
-    /// The lights of a shape, one for each of its primitives and in their order. Rays do not meet an
-    /// `invisible` shape. As in pbrt-v4, `power` is that of each primitive.
-    pub(crate) fn lights(&self, shape: &Arc<Shape>, invisible: bool) -> Vec<Light> {
-        (0..shape.len()).map(|i| Light::Area(self.light(shape, i, invisible))).collect()
+    /// The lights of a shape in the order of its primitives, and how many primitives each of them is: one, or two where pairs of
+    /// triangles are rectangles that emit evenly. Rays do not meet an `invisible` shape. As in pbrt-v4, `power` is that of each
+    /// primitive.
+    pub(crate) fn lights(&self, shape: &Shape, invisible: bool) -> (Vec<Light>, u32) {
+        let all = |shape: Arc<Shape>| {
+            (0..shape.len()).map(|i| Light::Area(self.light(&shape, i, invisible))).collect()
+        };
+        if let (Content::Uniform(_), None, Shape::Triangles(mesh)) = (&self.content, self.power, shape)
+            && let Some(rectangles) = mesh.rectangles()
+        {
+            return (all(Arc::new(Shape::Patches(Arc::new(rectangles)))), 2);
+        }
+        (all(Arc::new(shape.clone())), 1)
     }
 
     fn light(&self, shape: &Arc<Shape>, i: usize, invisible: bool) -> DiffuseAreaLight {

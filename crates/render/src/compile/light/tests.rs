@@ -3,7 +3,7 @@
 use super::*;
 use crate::light::{LightSample, LightStrategy::ByTexture, Lights};
 use std::path::PathBuf;
-use tenfold_geometry::{ReferencePoint, Shape, Sphere, SphereParams};
+use tenfold_geometry::{MeshParts, ReferencePoint, Shape, Sphere, SphereParams, TriangleMesh};
 use tenfold_image::{Format, WriteOptions};
 use tenfold_scene::{Resources, Severity, SourceMap, read_pbrt_str};
 use tenfold_spectrum::{Observer, SampledSpectrum, SampledWavelengths};
@@ -41,9 +41,9 @@ fn compile(world: &str) -> Compiled {
     let cx = &mut Context::new(&diagnostics, &Images);
     let mut lights: Vec<Light> = description.lights.iter().filter_map(|l| compile_light(cx, l)).collect();
     let sphere = Sphere::new(Transform::IDENTITY, false, SphereParams::default()).unwrap();
-    let shape = Arc::new(Shape::Sphere(sphere));
+    let shape = Shape::Sphere(sphere);
     for entity in &description.area_lights {
-        lights.extend(compile_area_light(cx, entity).iter().flat_map(|e| e.lights(&shape, false)));
+        lights.extend(compile_area_light(cx, entity).iter().flat_map(|e| e.lights(&shape, false).0));
     }
     let messages = diagnostics.to_vec().into_iter().map(|d| (d.severity, d.plain(&sources))).collect();
     Compiled { lights, messages }
@@ -298,4 +298,32 @@ fn what_is_ignored_is_said() {
 fn light_that_cannot_be_seen_is_none() {
     let dark = light("LightSource \"point\" \"spectrum I\" [ 1000 1 2000 1 ]");
     assert!(sample(&dark, Vec3::X, Vec2::ZERO, &SampledWavelengths::fixed(550.0)).is_none());
+}
+
+#[test]
+fn triangles_that_make_up_rectangles_are_one_light() {
+    let quad = |indices: &[u32]| {
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)];
+        let parts = MeshParts {
+            positions: corners.iter().map(|&(x, y)| Vec3::new(x, y, 5.0)).collect(),
+            indices: indices.to_vec(),
+            ..MeshParts::default()
+        };
+        Shape::Triangles(Arc::new(TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap()))
+    };
+    let lights = |parameters: &str, shape: &Shape| {
+        let mut sources = SourceMap::new();
+        let scene = format!("WorldBegin AreaLightSource \"diffuse\" {parameters} Shape \"sphere\"");
+        let (description, diagnostics) = read_pbrt_str("scene.pbrt", &scene, &Images, &mut sources);
+        let cx = &mut Context::new(&diagnostics, &Images);
+        let (lights, each) =
+            compile_area_light(cx, &description.area_lights[0]).unwrap().lights(shape, false);
+        (lights.len(), each)
+    };
+    let pair = quad(&[0, 1, 2, 0, 2, 3]);
+    assert_eq!(lights("", &pair), (1, 2));
+    assert_eq!(lights("", &quad(&[0, 1, 2])), (1, 1));
+    assert_eq!(lights("", &quad(&[0, 1, 2, 0, 3, 2])), (2, 1));
+    // The power is that of each triangle.
+    assert_eq!(lights("\"float power\" 3", &pair), (2, 1));
 }
