@@ -80,6 +80,8 @@ pub(crate) fn compare(embree: &Embree, options: &Options, moving: bool) -> Resul
         let subject = Subject::named(name)?;
         let triangles = subject.parts.indices.len() / 3;
         let scenes = if moving { Scenes::moving(&subject) } else { Scenes::still(&subject.parts) };
+        let bytes = scenes.world.stats().bytes as f64 / triangles as f64;
+        println!("{:>16} {bytes:.1} bytes a triangle", subject.name);
         let peers: Vec<EmbreeScene<'_>> = options
             .qualities
             .iter()

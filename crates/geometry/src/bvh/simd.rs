@@ -35,6 +35,10 @@ pub(super) trait Simd {
 
     /// Puts the children whose bits are set in `mask` on the stack, those of later slots first, at no distance.
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]);
+
+    /// Begins to load a node or a block of triangles, where there are instructions for that.
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }
 
 /// The bits that are set in an index, the highest first: for [`Simd::push`].
@@ -184,6 +188,18 @@ mod avx2 {
         fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
             // SAFETY: the machine has AVX2, or this type is not used.
             unsafe { push(stack, mask, children) }
+        }
+
+        #[inline(always)]
+        fn prefetch<T>(what: &T) {
+            const LINE: usize = 64;
+            // Of blocks all but the line with nothing but names.
+            const MOST: usize = 5;
+            let start = std::ptr::from_ref(what).cast::<i8>();
+            for line in 0..size_of::<T>().div_ceil(LINE).min(MOST) {
+                // SAFETY: it lies within what is referred to, and every machine with AVX2 has the instruction.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line * LINE)) };
+            }
         }
     }
 

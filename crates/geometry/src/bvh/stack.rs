@@ -86,6 +86,13 @@ impl Stack {
         self.height += n;
     }
 
+    /// The child that comes next.
+    #[inline(always)]
+    pub(super) fn top(&self) -> Child {
+        // SAFETY: entries below the height, which is not 0, were written.
+        Child(unsafe { self.children[self.height - 1].assume_init() })
+    }
+
     /// The next child that is not farther than `t_max`; [`Child::EMPTY`] at the bottom, and only once.
     #[inline(always)]
     pub(super) fn pop(&mut self, t_max: f32) -> Child {

@@ -103,6 +103,9 @@ impl<V: Vector> Slabs<V> {
     }
 }
 
+/// Hierarchies of more nodes are larger than the caches near the processor: children that wait are loaded ahead.
+const LARGE: usize = 1 << 13;
+
 impl Bvh {
     /// Follows `ray` through the hierarchy, nearest boxes first, until the visitor says that it is over. Returns whether
     /// it did.
@@ -137,6 +140,7 @@ impl Bvh {
             true => stack.pop_any(),
             false => stack.pop(visitor.t_max()),
         };
+        let large = self.nodes.len() >= LARGE;
         let mut node = root;
         loop {
             let mut child = if mask == 0 {
@@ -151,6 +155,9 @@ impl Bvh {
             } else {
                 Child(S::push_sorted(&mut stack, mask, near, node.children()))
             };
+            if large && mask & mask.wrapping_sub(1) != 0 {
+                self.prefetch::<S>(stack.top());
+            }
             while !child.is_node() {
                 let over = match child.kind() {
                     Kind::Triangles => Self::visit_triangles(&shear, &self.blocks[child.index()], visitor),
@@ -166,6 +173,16 @@ impl Bvh {
             }
             node = &self.nodes[child.index()];
             (mask, near) = slabs.intersect(node, visitor.t_max());
+        }
+    }
+
+    /// Begins to load what a child refers to.
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, child: Child) {
+        match child.kind() {
+            Kind::Node => S::prefetch(&self.nodes[child.index()]),
+            Kind::Triangles => S::prefetch(&self.blocks[child.index()]),
+            Kind::Shape | Kind::Placement => {}
         }
     }
 
