@@ -248,3 +248,44 @@ fn of_hits_at_one_distance_that_of_the_first_primitive_counts() {
         }
     }
 }
+
+#[test]
+fn triangles_that_are_cut_are_found_along_their_whole_length() {
+    // Long slanted ones among small ones are what the builder cuts.
+    let mut rng = Rng::new(17);
+    let mut parts = MeshParts::default();
+    let mut add = |corners: [Vec3; 3]| {
+        parts.indices.extend((0..3).map(|i| parts.positions.len() as u32 + i));
+        parts.positions.extend(corners);
+    };
+    for _ in 0..3000 {
+        let p = in_box(&mut rng, 1.0);
+        add([p, p + in_box(&mut rng, 0.01), p + in_box(&mut rng, 0.01)]);
+    }
+    let rods: Vec<[Vec3; 3]> = (0..150)
+        .map(|_| {
+            let (a, b) = (in_box(&mut rng, 1.0), in_box(&mut rng, 1.0));
+            [a, b, b + in_box(&mut rng, 0.01)]
+        })
+        .collect();
+    rods.iter().for_each(|rod| add(*rod));
+    let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+    let desc =
+        WorldDesc { geometries: vec![still(Shape::Triangles(Arc::new(mesh)), 0)], ..WorldDesc::default() };
+    let world = World::build(desc.clone()).unwrap();
+    let portable = World::build(desc.clone()).unwrap().portable();
+    let mut hits = 0;
+    for [a, b, c] in rods {
+        for _ in 0..10 {
+            let s = rng.f32();
+            let on_it = a + s * (0.5 * (b + c) - a);
+            let origin = in_box(&mut rng, 3.0);
+            let ray = Ray::new(origin, on_it - origin, 0.0);
+            let hit = world.intersect(&ray, f32::INFINITY, |_| true);
+            assert_eq!(hit.map(|h| (h.t, h.primitive)), brute_force(&desc, &ray, f32::INFINITY), "{ray:?}");
+            assert_eq!(portable.intersect(&ray, f32::INFINITY, |_| true), hit);
+            hits += u32::from(hit.is_some());
+        }
+    }
+    assert!(hits > 1200, "{hits}");
+}
