@@ -77,6 +77,35 @@ impl DecodeTable {
     }
 }
 
+/// Where the codes of an encoding begin: the same codes as [`ColorEncoding::encode_u8`] gives, without a power for each.
+pub(crate) struct EncodeTable {
+    /// The least linear values of the codes from 1.
+    starts: Box<[f32; 255]>,
+}
+
+impl EncodeTable {
+    /// Tabulates `encoding`.
+    pub(crate) fn new(encoding: ColorEncoding) -> Self {
+        let start = |index: usize| {
+            // The floats from 0 to 1 are in the order of their bits.
+            let (mut below, mut reached) = (0, 1f32.to_bits());
+            while reached - below > 1 {
+                let middle = below + (reached - below) / 2;
+                let is_reached = usize::from(encoding.encode_u8(f32::from_bits(middle))) > index;
+                *(if is_reached { &mut reached } else { &mut below }) = middle;
+            }
+            f32::from_bits(reached)
+        };
+        Self { starts: Box::new(std::array::from_fn(start)) }
+    }
+
+    /// Nearest code of the linear value `v`.
+    #[inline]
+    pub(crate) fn encode(&self, v: f32) -> u8 {
+        self.starts.partition_point(|start| *start <= v) as u8
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,6 +130,19 @@ mod tests {
         assert!((srgb_to_linear(188.0 / 255.0) - 0.502886).abs() < 1e-6);
         assert_eq!(srgb_to_linear(1.0), 1.0);
         assert_eq!(linear_to_srgb(1.0), 1.0);
+    }
+
+    #[test]
+    fn tabulated_codes_are_those_computed() {
+        for encoding in ALL {
+            let table = EncodeTable::new(encoding);
+            let near_starts = table.starts.iter().flat_map(|s| [s.next_down(), *s, s.next_up()]);
+            let spread = (0..200_000).map(|i| (i as f32 * 0.618_034).fract().powi(3));
+            let odd = [0.0, -0.0, 1.0, -1.0, 2.0, 1e-40, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+            for v in near_starts.chain(spread).chain(odd) {
+                assert_eq!(table.encode(v), encoding.encode_u8(v), "{encoding:?} {v}");
+            }
+        }
     }
 
     #[test]

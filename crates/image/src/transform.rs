@@ -1,6 +1,6 @@
 //! Images made of images: parts, mirrors, other formats.
 
-use crate::encoding::{ColorEncoding, DecodeTable};
+use crate::encoding::{ColorEncoding, DecodeTable, EncodeTable};
 use crate::error::ImageErrorKind;
 use crate::image::{Image, PixelData};
 use half::f16;
@@ -157,12 +157,17 @@ impl Image {
 
     /// The image with 8-bit codes, each the nearest to its value. Opacity is encoded linearly.
     pub fn to_u8(&self, encoding: ColorEncoding) -> Image {
+        /// As many values as it takes to make up for the table.
+        const MANY: usize = 1 << 16;
         let alpha = self.alpha_channel();
-        let code = |v: f32, channel: usize| {
-            let encoding = if alpha == Some(channel) { ColorEncoding::Linear } else { encoding };
-            encoding.encode_u8(v)
-        };
-        self.with_data(PixelData::U8(self.mapped(code), DecodeTable::new(encoding)))
+        let many = self.width() as usize * self.height() as usize * self.channels().len() >= MANY;
+        let table = many.then(|| EncodeTable::new(encoding));
+        let codes = self.mapped(|v, channel| match &table {
+            _ if alpha == Some(channel) => ColorEncoding::Linear.encode_u8(v),
+            Some(table) => table.encode(v),
+            None => encoding.encode_u8(v),
+        });
+        self.with_data(PixelData::U8(codes, DecodeTable::new(encoding)))
     }
 
     /// What `map` makes of every value and the number of its channel, computed by all threads.
