@@ -1,4 +1,4 @@
-use crate::{Vec3, next_down, next_up};
+use crate::{Vec3, next_by_sign};
 
 /// A ray at an instant: `origin + t · direction`. The direction need not be of unit length.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -33,14 +33,6 @@ pub fn offset_ray_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Ve
     let d = n.abs().dot(p_error);
     let offset = if direction.dot(n) < 0.0 { -d * n } else { d * n };
     let moved = p + offset;
-    let away = |x: f32, o: f32| {
-        if o > 0.0 {
-            next_up(x)
-        } else if o < 0.0 {
-            next_down(x)
-        } else {
-            x
-        }
-    };
+    let away = |x, o| next_by_sign(x, o);
     Vec3::new(away(moved.x, offset.x), away(moved.y, offset.y), away(moved.z, offset.z))
 }

@@ -36,6 +36,12 @@ pub struct PixelDifferentials {
 }
 
 impl Camera {
+    /// Whether it has a lens, so that it matters where rays leave from it.
+    #[inline]
+    pub fn has_lens(&self) -> bool {
+        self.lens.is_some()
+    }
+
     /// The ray through `film` (in pixels from the upper left corner of the picture) and the point of the lens that
     /// `u_lens` chooses, at an instant. Its direction has unit length, and its weight is one.
     #[inline]

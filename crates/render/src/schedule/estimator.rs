@@ -46,7 +46,7 @@ impl<'a> PixelEstimator<'a> {
         let wavelengths = self
             .wavelengths
             .unwrap_or_else(|| SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH)));
-        let u_lens = sampler.get_2d(Dimension::LENS);
+        let u_lens = if scene.camera.has_lens() { sampler.get_2d(Dimension::LENS) } else { Vec2::ZERO };
         let shutter = match sampler.held(Variable::Time) {
             None => self.time.sample(&scene.camera.shutter, sampler.get_1d(Dimension::TIME)),
             Some(fraction) => ShutterSample { time: scene.camera.shutter.instant(fraction.x), weight: 1.0 },
