@@ -8,6 +8,8 @@ use tenfold_spectrum::{
 #[derive(Clone, Debug)]
 pub struct Emission {
     spectrum: DenselySampled,
+    /// [`visible_mean`] of the table, which many lights may share.
+    mean: f32,
     /// Factor of the table.
     pub scale: f32,
 }
@@ -19,13 +21,14 @@ impl Emission {
             Spectrum::Dense(s) => s.clone(),
             s => DenselySampled::from_spectrum(s),
         };
-        Self { spectrum, scale }
+        let mean = visible_mean(|lambda| spectrum.eval(lambda));
+        Self { spectrum, mean, scale }
     }
 
     /// The same spectrum times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f32) -> Self {
-        Self { spectrum: self.spectrum.clone(), scale: self.scale * factor }
+        Self { scale: self.scale * factor, ..self.clone() }
     }
 
     /// Values at the wavelengths of a path.
@@ -36,7 +39,7 @@ impl Emission {
 
     /// The mean over the visible wavelengths, weighted as paths choose them: by it lights are compared.
     pub fn visible_mean(&self) -> f32 {
-        self.scale * visible_mean(|lambda| self.spectrum.eval(lambda))
+        self.scale * self.mean
     }
 }
 
