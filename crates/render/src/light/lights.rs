@@ -182,7 +182,7 @@ impl Lights {
         light: Id<Light>,
         direction: Vec3,
     ) -> f32 {
-        self.pmf(from, light) * self.get(light).pdf_escaped(strategy, direction)
+        self.pmf(from, light) * self.get(light).pdf_escaped(strategy, from, direction)
     }
 
     /// The probability with which [`Lights::sample`] chooses `light` at `from`.

@@ -176,7 +176,7 @@ impl Light {
             Self::Projection(l) => l.sample(from, w),
             Self::Goniometric(l) => l.sample(from, w),
             Self::Area(l) => l.sample(strategy, from, u, w),
-            Self::Uniform(l) => (strategy != LightStrategy::AsPoint).then(|| l.sample(u, w)),
+            Self::Uniform(l) => (strategy != LightStrategy::AsPoint).then(|| l.sample(strategy, from, u, w)),
             Self::Image(l) => l.sample(strategy, u, w),
         }
     }
@@ -196,12 +196,12 @@ impl Light {
         }
     }
 
-    /// Density with which [`Light::sample`] finds the infinitely far unit `direction`.
+    /// Density with which [`Light::sample`] finds, from `from`, the infinitely far unit `direction`.
     #[inline]
-    fn pdf_escaped(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
+    fn pdf_escaped(&self, strategy: LightStrategy, from: &ReferencePoint, direction: Vec3) -> f32 {
         match self {
             Self::Uniform(_) if strategy == LightStrategy::AsPoint => 0.0,
-            Self::Uniform(l) => l.pdf(),
+            Self::Uniform(l) => l.pdf(strategy, from, direction),
             Self::Image(l) => l.pdf(strategy, direction),
             Self::Point(_)
             | Self::Spot(_)

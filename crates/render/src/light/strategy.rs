@@ -6,8 +6,8 @@
 /// | | on a surface | infinitely far away |
 /// |---|---|---|
 /// | `UniformArea` | by area | by direction |
-/// | `SolidAngle` | by solid angle, where the shape can | by direction |
-/// | `ByTexture` | the same, and where there is a picture also by its brightness | by the brightness of the picture |
+/// | `SolidAngle` | by solid angle, where the shape can | by direction; even light by the cosine at surfaces |
+/// | `ByTexture` | the same, and where there is a picture also by its brightness | the same, and a picture by its brightness |
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum LightStrategy {
     /// Uniformly over the light's area (quadrics that are stretched unevenly: over that before), or over all directions.

@@ -80,7 +80,14 @@ fn images_on_area_lights_too() {
 fn skies_have_the_density_of_their_samples() {
     let uniform = Light::Uniform(UniformInfinite { radiance: constant(1.0) });
     for (i, light) in [uniform, image_sky()].into_iter().enumerate() {
-        check(&format!("sky {i}"), &PLAIN, &Lights::build(vec![light]), &references()[0], 200 + i as u64);
+        let lights = Lights::build(vec![light]);
+        let [flat, inclined, free] = references();
+        let seed = 200 + 4 * i as u64;
+        for (k, from) in
+            [flat, inclined.seen_from(Vec3::Z), flat.seen_from(Vec3::NEG_Z), free].iter().enumerate()
+        {
+            check(&format!("sky {i}, reference {k}"), &PLAIN, &lights, from, seed + k as u64);
+        }
     }
 }
 
