@@ -5,6 +5,10 @@
 //! each by a permutation that depends on all digits above it, so that every aligned block of the tree stays a block
 //! of the sequence, which is a net, while blocks trade places. Then both coordinates are Owen-scrambled (Owen 1995).
 //!
+//! The lowest digits, which tell the samples of a pixel apart, are permuted as a whole. Under nested permutations four samples that are
+//! together in one dimension are together in all, and each four are spread: what two dimensions do together then
+//! has up to 4/3 of the variance that independent permutations leave.
+//!
 //! Nested permutations need no loop over digits. With the topmost digit in the *lowest* bits, sums and products of integers
 //! carry towards the lower digits only, as Laine and Karras (2011) use for Owen scrambling in base 2. Sums and products permute
 //! a digit in eight of the 24 ways; the rest comes from shears, which add the digit's one bit to the other
