@@ -266,15 +266,12 @@ struct Binary<'a, const BIG: bool> {
 }
 
 impl<const BIG: bool> Binary<'_, BIG> {
+    /// The next number, an item by itself.
     #[inline]
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
-        let (bytes, rest) = self.data.split_first_chunk::<N>().ok_or(Fault::Truncated)?;
+    fn take(&mut self, scalar: Scalar) -> Result<(Field, &[u8]), Fault> {
+        let (item, rest) = self.data.split_at_checked(scalar.size()).ok_or(Fault::Truncated)?;
         self.data = rest;
-        let mut bytes = *bytes;
-        if BIG {
-            bytes.reverse();
-        }
-        Ok(bytes)
+        Ok((Field { at: 0, scalar }, item))
     }
 }
 
@@ -293,25 +290,14 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
 
     #[inline]
     fn float(&mut self, scalar: Scalar) -> Result<f32, Fault> {
-        Ok(match scalar {
-            Scalar::F32 => f32::from_le_bytes(self.take()?),
-            Scalar::F64 => f64::from_le_bytes(self.take()?) as f32,
-            _ => self.integer(scalar)? as f32,
-        })
+        let (number, item) = self.take(scalar)?;
+        Ok(number.float(item, BIG))
     }
 
     #[inline]
     fn integer(&mut self, scalar: Scalar) -> Result<i64, Fault> {
-        Ok(match scalar {
-            Scalar::I8 => i8::from_le_bytes(self.take()?).into(),
-            Scalar::U8 => u8::from_le_bytes(self.take()?).into(),
-            Scalar::I16 => i16::from_le_bytes(self.take()?).into(),
-            Scalar::U16 => u16::from_le_bytes(self.take()?).into(),
-            Scalar::I32 => i32::from_le_bytes(self.take()?).into(),
-            Scalar::U32 => u32::from_le_bytes(self.take()?).into(),
-            Scalar::F32 => f32::from_le_bytes(self.take()?) as i64,
-            Scalar::F64 => f64::from_le_bytes(self.take()?) as i64,
-        })
+        let (number, item) = self.take(scalar)?;
+        Ok(number.integer(item, BIG))
     }
 
     #[inline]

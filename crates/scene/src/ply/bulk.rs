@@ -151,8 +151,9 @@ impl Faces {
 }
 
 impl Field {
+    /// The number in an item, as a float.
     #[inline]
-    fn float(self, item: &[u8], big_endian: bool) -> f32 {
+    pub(super) fn float(self, item: &[u8], big_endian: bool) -> f32 {
         match self.scalar {
             Scalar::F32 => f32::from_le_bytes(ordered(item, self.at, big_endian)),
             Scalar::F64 => f64::from_le_bytes(ordered(item, self.at, big_endian)) as f32,
@@ -160,9 +161,9 @@ impl Field {
         }
     }
 
-    /// Fractions are cut off.
+    /// The number in an item, as an integer; fractions are cut off.
     #[inline]
-    fn integer(self, item: &[u8], big_endian: bool) -> i64 {
+    pub(super) fn integer(self, item: &[u8], big_endian: bool) -> i64 {
         let at = self.at;
         match self.scalar {
             Scalar::I8 => i8::from_le_bytes(bytes_at(item, at)).into(),
