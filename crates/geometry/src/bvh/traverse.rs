@@ -29,9 +29,11 @@ impl Level {
     /// The best that this machine has.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        use std::arch::is_x86_feature_detected as has;
-        if has!("avx2") && has!("bmi1") && has!("lzcnt") && has!("popcnt") {
-            return Self::Avx2(Avx2Token(()));
+        {
+            use std::arch::is_x86_feature_detected as has;
+            if has!("avx2") && has!("bmi1") && has!("lzcnt") && has!("popcnt") {
+                return Self::Avx2(Avx2Token(()));
+            }
         }
         Self::Portable
     }
@@ -68,7 +70,7 @@ struct Slabs<V> {
 
 /// Room for the rounding of the products that give distances to planes (Ize 2013) and of the triangle test (see `padded`): boxes seem longer
 /// by this factor, and so does the way that the ray may go. So no rounding decides which hits are found.
-const LONGER: f32 = 1.0 + 2.0 * gamma(8);
+pub(crate) const LONGER: f32 = 1.0 + 2.0 * gamma(8);
 
 impl<V: Vector> Slabs<V> {
     #[inline(always)]
