@@ -15,7 +15,7 @@ mod triangles;
 pub(crate) use build::{Reference, Target, padded};
 pub(crate) use memory::with_capacity;
 pub(crate) use node::LeafPrimitive;
-pub(crate) use traverse::{Level, Visitor};
+pub(crate) use traverse::{LONGER, Level, Visitor};
 
 use node::{Node, TriangleBlock};
 use tenfold_math::{Bounds3, Vec3};

@@ -3,12 +3,12 @@
 use super::{Geometry, WorldDesc, WorldError, WorldStats};
 use crate::{
     Shape,
-    bvh::{Bvh, LeafPrimitive, Reference, Target, padded, with_capacity},
+    bvh::{Bvh, LONGER, LeafPrimitive, Reference, Target, padded, with_capacity},
     mesh::is_degenerate,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use tenfold_math::{Bounds3, Motion, Ray, Transform, Vec3, gamma};
+use tenfold_math::{Bounds3, Motion, Ray, Transform, Vec3};
 
 /// Where a placement goes.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl Placement {
         let b = (start.max.lerp(end.max, s) - ray.origin) * inverse;
         // Room for rounding, as in the hierarchy; what is not a number decides nothing.
         let near = a.min(b).max_element().max(0.0);
-        let far = a.max(b).min_element().min(t_max) * (1.0 + 2.0 * gamma(8));
+        let far = a.max(b).min_element().min(t_max) * LONGER;
         !(far < near)
     }
 
