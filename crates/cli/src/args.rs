@@ -108,8 +108,8 @@ pub(crate) struct Args {
     pub(crate) sampler: Vec<SamplerChoice>,
 
     /// How lights, directions and the time are sampled; the picture is the same for all but for its noise. Several with commas between:
-    /// light=uniform-area, solid-angle or by-texture; scatter=uniform, cosine or bsdf; combine=mis, light-only or bsdf-only;
-    /// time=shutter or path:NAME, uniform along the path of an object or the camera
+    /// light=uniform-area, solid-angle, by-texture or complementary; scatter=uniform, cosine or bsdf; combine=mis, light-only or
+    /// bsdf-only; time=shutter or path:NAME, uniform along the path of an object or the camera
     /// [default: the last of light and scatter, the first of combine and time]
     #[arg(long, value_name = "VARIABLE=NAME", value_parser = strategy::parse, value_delimiter = ',',
           help_heading = "Sampling")]

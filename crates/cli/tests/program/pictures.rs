@@ -69,7 +69,7 @@ fn exr_files_tell_their_story() {
     };
     assert_eq!(text("software"), format!("tenfold {}", env!("CARGO_PKG_VERSION")));
     assert_eq!([text("scene"), text("seed"), text("sampler")], ["scene.pbrt", "42", "zsobol"]);
-    assert_eq!(text("strategy"), "light=by-texture,scatter=bsdf,combine=mis,time=shutter");
+    assert_eq!(text("strategy"), "light=complementary,scatter=bsdf,combine=mis,time=shutter");
     assert!(!image.metadata.attributes.contains_key("frozen"));
     assert_eq!(image.metadata.attributes["samplesPerPixel"], Attribute::I32(2));
     assert!(matches!(image.metadata.attributes["renderTimeSeconds"], Attribute::F32(s) if s > 0.0));

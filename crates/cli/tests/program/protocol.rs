@@ -20,7 +20,7 @@ fn a_render_starts_and_completes() {
     let (first, last) = (&events[0], events.last().unwrap());
     assert_eq!((&first["event"], &first["scene"]), (&"started".into(), &"scene.pbrt".into()));
     assert_eq!(first["samples"], 23 * 17 * 3);
-    assert_eq!(first["strategy"], "light=by-texture,scatter=cosine,combine=mis,time=shutter");
+    assert_eq!(first["strategy"], "light=complementary,scatter=cosine,combine=mis,time=shutter");
     assert_eq!(last["event"], "completed");
     assert_eq!(last["outputs"], serde_json::json!(["a.exr", "b.png"]));
     assert_eq!(last["samples"], 23 * 17 * 3);

@@ -16,24 +16,27 @@ pub struct Strategies {
 }
 
 impl Strategies {
-    /// What they come to where `plan` holds points on lights or directions of scattering. A held point is not one that a scattered
+    /// What they come to with each other, and where `plan` holds points on lights or directions of scattering. A held point is not one that a scattered
     /// direction meets, nor does a held direction meet lights as often as it should: so where both would count, light is
     /// found by sampling it alone. With held points lights are points; light from infinitely far has no point to
-    /// be held, and scattered directions alone find it. With held directions glossy surfaces are mirrors.
+    /// be held, and scattered directions alone find it. With held directions glossy surfaces are mirrors. Where lights are sampled
+    /// alone, no light is left to scattered directions.
     #[must_use]
     pub fn held(self, plan: &SamplePlan) -> Self {
         let held = |variable| matches!(plan.draw(variable), Draw::Held(_));
         let (point, direction) = (held(Variable::LightPoint), held(Variable::ScatterDirection));
         let single = (point || direction) && self.combine == CombineStrategy::Mis;
-        Self {
-            light: if point { LightStrategy::AsPoint } else { self.light },
-            combine: if single { CombineStrategy::LightOnly } else { self.combine },
-            ..self
-        }
+        let combine = if single { CombineStrategy::LightOnly } else { self.combine };
+        let light = match self.light {
+            _ if point => LightStrategy::AsPoint,
+            LightStrategy::Complementary if combine == CombineStrategy::LightOnly => LightStrategy::ByTexture,
+            light => light,
+        };
+        Self { light, combine, ..self }
     }
 }
 
-/// As the command line takes it: `light=by-texture,scatter=bsdf,combine=mis`.
+/// As the command line takes it: `light=complementary,scatter=bsdf,combine=mis`.
 impl fmt::Display for Strategies {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { light, scatter, combine } = self;

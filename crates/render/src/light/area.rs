@@ -1,5 +1,6 @@
 //! Light from the surface of a shape.
 
+use super::LightStrategy::{AsPoint, ByTexture, Complementary, SolidAngle, UniformArea};
 use super::area_image::AreaImage;
 use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
@@ -119,17 +120,15 @@ impl DiffuseAreaLight {
     ) -> Option<LightSample> {
         let primitive = self.primitive();
         let s = match (strategy, &self.radiance) {
-            (LightStrategy::ByTexture, AreaRadiance::Image(image)) => {
+            (ByTexture | Complementary, AreaRadiance::Image(image)) => {
                 image.sample_from(&primitive, from, u)?
             }
-            (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => primitive.sample_from(from, u)?,
-            (LightStrategy::UniformArea, _) => primitive.sample_area_from(from, u)?,
-            (LightStrategy::AsPoint, AreaRadiance::Image(image)) => image.point_from(&primitive, from, u)?,
+            (ByTexture | Complementary | SolidAngle, _) => primitive.sample_from(from, u)?,
+            (UniformArea, _) => primitive.sample_area_from(from, u)?,
+            (AsPoint, AreaRadiance::Image(image)) => image.point_from(&primitive, from, u)?,
             // A ball shines to all sides by what is seen of it; where the other shapes are seen from must not matter.
-            (LightStrategy::AsPoint, _) if matches!(primitive, Primitive::Sphere(_)) => {
-                primitive.sample_from(from, u)?
-            }
-            (LightStrategy::AsPoint, _) => primitive.sample_area_from(from, u)?,
+            (AsPoint, _) if matches!(primitive, Primitive::Sphere(_)) => primitive.sample_from(from, u)?,
+            (AsPoint, _) => primitive.sample_area_from(from, u)?,
         };
         let to_light = s.p - from.p;
         let distance_squared = to_light.length_squared();
@@ -152,13 +151,11 @@ impl DiffuseAreaLight {
     pub(super) fn pdf(&self, strategy: LightStrategy, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         let primitive = self.primitive();
         match (strategy, &self.radiance) {
-            (LightStrategy::ByTexture, AreaRadiance::Image(image)) => image.pdf_from(&primitive, from, point),
-            (LightStrategy::ByTexture | LightStrategy::SolidAngle, _) => {
-                primitive.pdf_from_point(from, point)
+            (ByTexture | Complementary, AreaRadiance::Image(image)) => {
+                image.pdf_from(&primitive, from, point)
             }
-            (LightStrategy::UniformArea | LightStrategy::AsPoint, _) => {
-                primitive.pdf_area_from_point(from, point)
-            }
+            (ByTexture | Complementary | SolidAngle, _) => primitive.pdf_from_point(from, point),
+            (UniformArea | AsPoint, _) => primitive.pdf_area_from_point(from, point),
         }
     }
 }

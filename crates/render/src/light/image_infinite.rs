@@ -54,7 +54,7 @@ impl ImageInfinite {
     ) -> Option<LightSample> {
         let (wi, color, pdf) = match strategy {
             LightStrategy::AsPoint => return None,
-            LightStrategy::ByTexture => {
+            LightStrategy::ByTexture | LightStrategy::Complementary => {
                 let s = self.distribution.sample(u);
                 let wi = self.world_from_light * equal_area_square_to_sphere(s.point);
                 (wi, self.image.pixel(s.cell, w), s.pdf)
@@ -79,7 +79,9 @@ impl ImageInfinite {
     pub(super) fn pdf(&self, strategy: LightStrategy, direction: Vec3) -> f32 {
         let on_square = match strategy {
             LightStrategy::AsPoint => 0.0,
-            LightStrategy::ByTexture => self.distribution.pdf(self.square(direction)),
+            LightStrategy::ByTexture | LightStrategy::Complementary => {
+                self.distribution.pdf(self.square(direction))
+            }
             LightStrategy::UniformArea | LightStrategy::SolidAngle => 1.0,
         };
         on_square * warp::uniform_sphere_pdf()

@@ -17,7 +17,10 @@ use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 pub struct Lights {
     all: Vec<Light>,
     tree: LightTree,
+    /// Even skies last.
     far: Vec<FarLight>,
+    /// How many of `far` are no even skies.
+    uneven: usize,
     skies: Vec<Id<Light>>,
 }
 
@@ -87,9 +90,12 @@ impl Lights {
             }
         }
         let tree = LightTree::build(&mut entries, lights.len());
+        let is_even = |far: &FarLight| matches!(lights[far.light as usize], Light::Uniform(_));
+        far.sort_by_key(is_even);
+        let uneven = far.partition_point(|far| !is_even(far));
         let sky = |(i, l): (usize, &Light)| l.is_sky().then(|| Id::new(i));
         let skies = lights.iter().enumerate().filter_map(sky).collect();
-        Self { all: lights, tree, far, skies }
+        Self { all: lights, tree, far, uneven, skies }
     }
 
     /// How many lights there are.
@@ -125,7 +131,7 @@ impl Lights {
         u: Vec2,
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
-        let choice = self.choose(from, u_choice)?;
+        let choice = self.choose(strategy, from, u_choice)?;
         let mut sample = self.all[choice.light].sample(strategy, from, u, w)?;
         sample.pdf *= choice.pmf;
         (sample.pdf > 0.0).then_some(sample)
@@ -162,7 +168,7 @@ impl Lights {
         if !l.emits_toward(hit.n, -wi) {
             return 0.0;
         }
-        let pmf = self.pmf(from, light);
+        let pmf = self.pmf(strategy, from, light);
         if pmf == 0.0 { 0.0 } else { pmf * l.pdf(strategy, from, &hit.surface_point()) }
     }
 
@@ -182,32 +188,42 @@ impl Lights {
         light: Id<Light>,
         direction: Vec3,
     ) -> f32 {
-        self.pmf(from, light) * self.get(light).pdf_escaped(strategy, from, direction)
+        let pmf = self.pmf(strategy, from, light);
+        if pmf == 0.0 { 0.0 } else { pmf * self.get(light).pdf_escaped(strategy, from, direction) }
     }
 
-    /// The probability with which [`Lights::sample`] chooses `light` at `from`.
+    /// The probability with which [`Lights::sample`] by `strategy` chooses `light` at `from`.
     #[inline]
-    pub fn pmf(&self, from: &ReferencePoint, light: Id<Light>) -> f32 {
-        let light = light.index();
+    pub fn pmf(&self, strategy: LightStrategy, from: &ReferencePoint, light: Id<Light>) -> f32 {
+        let (light, all_far) = (light.index(), self.far(strategy));
         if self.tree.contains(light) {
             let in_tree = self.tree.pmf(from, light);
-            if self.far.is_empty() || in_tree == 0.0 {
+            if all_far.is_empty() || in_tree == 0.0 {
                 return in_tree;
             }
-            let candidates = self.candidates(from);
+            let candidates = self.candidates(all_far, from);
             return candidates.probability(candidates.tree) * in_tree;
         }
-        match self.far.iter().find(|far| far.light as usize == light) {
-            Some(far) => self.candidates(from).probability(far.importance(from)),
+        match all_far.iter().find(|far| far.light as usize == light) {
+            Some(far) => self.candidates(all_far, from).probability(far.importance(from)),
             None => 0.0,
         }
     }
 
+    /// The candidates beside the tree.
     #[inline]
-    fn candidates(&self, from: &ReferencePoint) -> Candidates {
+    fn far(&self, strategy: LightStrategy) -> &[FarLight] {
+        match strategy {
+            LightStrategy::Complementary => &self.far[..self.uneven],
+            _ => &self.far,
+        }
+    }
+
+    #[inline]
+    fn candidates(&self, all_far: &[FarLight], from: &ReferencePoint) -> Candidates {
         let tree = self.tree.importance(from);
         let mut candidates = Candidates { tree, total: tree, count: if tree > 0.0 { 1.0 } else { 0.0 } };
-        for far in &self.far {
+        for far in all_far {
             let importance = far.importance(from);
             if importance > 0.0 {
                 candidates.total += importance;
@@ -218,12 +234,18 @@ impl Lights {
     }
 
     #[inline]
-    pub(super) fn choose(&self, from: &ReferencePoint, mut u: f32) -> Option<Choice> {
+    pub(super) fn choose(
+        &self,
+        strategy: LightStrategy,
+        from: &ReferencePoint,
+        mut u: f32,
+    ) -> Option<Choice> {
         let mut p_tree = 1.0;
-        if !self.far.is_empty() {
-            let candidates = self.candidates(from);
+        let all_far = self.far(strategy);
+        if !all_far.is_empty() {
+            let candidates = self.candidates(all_far, from);
             let mut chosen = None;
-            for far in &self.far {
+            for far in all_far {
                 let pmf = candidates.probability(far.importance(from));
                 if pmf > 0.0 {
                     chosen = Some(Choice { light: far.light as usize, pmf });

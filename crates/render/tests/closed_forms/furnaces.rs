@@ -154,7 +154,7 @@ fn energy_lost_by_single_scattering() {
             let tan = 2.0 * (alpha * (u / (1.0 - u)).sqrt()).atan();
             2.0 / (1.0 + (1.0 + alpha * alpha * tan.tan().powi(2)).sqrt())
         });
-        let along = radiance(&scene, at_impact(0.0), Split, 20_000, 8);
+        let along = radiance(&scene, at_impact(0.0), Split, 40_000, 8);
         check_lanes(&format!("roughness {alpha}"), &along, [escaping; N], 0.003, 5);
         for impact in [0.5, 0.8, 0.95] {
             let got = radiance(&scene, at_impact(impact), Split, 4000, 7)[0];

@@ -7,7 +7,7 @@ use tenfold_render::bxdf::ScatterStrategy::{self, Bsdf, Cosine, Uniform};
 use tenfold_render::film::{Film, PixelBounds};
 use tenfold_render::integrator::CombineStrategy::{self, BsdfOnly, LightOnly, Mis};
 use tenfold_render::integrator::Strategies;
-use tenfold_render::light::LightStrategy::{self, ByTexture, SolidAngle, UniformArea};
+use tenfold_render::light::LightStrategy::{self, ByTexture, Complementary, SolidAngle, UniformArea};
 use tenfold_render::scene::Scene;
 use tenfold_testkit::stats::t_test_two;
 use tenfold_testkit::{TTest, Welford};
@@ -25,7 +25,7 @@ const SCENES: usize = 2;
 const STRATEGIES: [Strategies; 9] = [
     by(UniformArea, Bsdf, Mis),
     by(SolidAngle, Bsdf, Mis),
-    by(ByTexture, Uniform, Mis),
+    by(Complementary, Uniform, Mis),
     by(ByTexture, Cosine, Mis),
     by(ByTexture, Bsdf, LightOnly),
     by(ByTexture, Bsdf, BsdfOnly),
@@ -154,6 +154,16 @@ fn strategies_differ_sample_by_sample() {
 #[test]
 fn glass_looks_the_same_by_all() {
     check("glass", &glass());
+}
+
+/// Where lights are sampled alone, no light is left to scattered directions.
+#[test]
+fn light_sampling_alone_finds_even_skies_too() {
+    let scene = glass();
+    let one =
+        |light, combine| film(&scene, |s| (s.spp, s.strategies) = (1, by(light, Bsdf, combine))).means();
+    assert!(one(Complementary, LightOnly) == one(ByTexture, LightOnly));
+    assert!(one(Complementary, Mis) != one(ByTexture, Mis));
 }
 
 /// A wrong density of one light alone shows, too: as if its samples weighed a tenth too much.

@@ -61,7 +61,7 @@ fn probabilities_of_all_lights_sum_to_one() {
             }
             let lights = Lights::build(all.clone());
             for from in points() {
-                let sum: f64 = ids(&lights).map(|id| f64::from(lights.pmf(&from, id))).sum();
+                let sum: f64 = ids(&lights).map(|id| f64::from(lights.pmf(ByTexture, &from, id))).sum();
                 assert!((sum - 1.0).abs() < 1e-4, "{count} lights at {:?}: {sum}", from.p);
             }
         }
@@ -82,17 +82,17 @@ fn lights_are_chosen_as_often_as_their_probability() {
         let mut rng = Rng::new(10 + i as u64);
         let mut observed = vec![0u64; lights.len() + 1];
         for _ in 0..samples {
-            match lights.choose(from, rng.f32()) {
+            match lights.choose(ByTexture, from, rng.f32()) {
                 Some(c) => {
                     observed[c.light] += 1;
-                    let pmf = lights.pmf(from, Id::new(c.light));
+                    let pmf = lights.pmf(ByTexture, from, Id::new(c.light));
                     assert!((c.pmf / pmf - 1.0).abs() < 1e-4, "{} {pmf}", c.pmf);
                 }
                 None => observed[lights.len()] += 1,
             }
         }
         let mut expected: Vec<f64> =
-            ids(&lights).map(|id| samples as f64 * f64::from(lights.pmf(from, id))).collect();
+            ids(&lights).map(|id| samples as f64 * f64::from(lights.pmf(ByTexture, from, id))).collect();
         expected.push((samples as f64 - expected.iter().sum::<f64>()).max(0.0));
         let options = Options { tests: points().len() + opaque.len(), ..Options::default() };
         counts_test(&observed, &expected, &options).check(&format!("reference {i}"));
@@ -111,12 +111,33 @@ fn opaque_surfaces_have_no_use_for_lights_behind_them() {
         Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, -0.8), irradiance: constant(0.1) }),
     ]);
     let from = surface(Vec3::ZERO, Vec3::Z);
-    let pmfs = |from: &ReferencePoint| [0, 1, 2, 3].map(|i| lights.pmf(from, Id::new(i)));
+    let pmfs = |from: &ReferencePoint| [0, 1, 2, 3].map(|i| lights.pmf(ByTexture, from, Id::new(i)));
     let sheer = pmfs(&from);
     assert!(sheer[0] == sheer[1] && sheer[2] == sheer[3] && sheer[0] + sheer[2] == 0.5, "{sheer:?}");
     let (above, below) = (pmfs(&from.seen_from(Vec3::Z)), pmfs(&from.seen_from(Vec3::NEG_Z)));
     assert!(above[1] == 0.0 && above[3] == 0.0 && (above[0] + above[2] - 1.0).abs() < 1e-6, "{above:?}");
     assert_eq!([above[1], above[0], above[3], above[2]], below);
+}
+
+/// Scattered directions are to find even skies: the other lights are chosen as often as if there were none.
+#[test]
+fn even_skies_are_left_to_scattering() {
+    let others = || {
+        let distant = DistantLight { direction: Vec3::Y, irradiance: constant(0.7) };
+        let mut all = many(20, 6);
+        all.extend([Light::Distant(distant), image_sky()]);
+        all
+    };
+    let sky = Light::Uniform(UniformInfinite { radiance: constant(3.0) });
+    let with = Lights::build([vec![sky.clone()], others()].concat());
+    let without = Lights::build(others());
+    for from in points() {
+        let pmf = |lights: &Lights, i| lights.pmf(Complementary, &from, Id::new(i));
+        assert_eq!(pmf(&with, 0), 0.0);
+        assert_eq!(density(Complementary, &Lights::build(vec![sky.clone()]), &from, Vec3::Z), 0.0);
+        (0..without.len()).for_each(|i| assert_eq!(pmf(&with, 1 + i), pmf(&without, i)));
+        assert!(with.pmf(ByTexture, &from, Id::new(0)) > 0.0);
+    }
 }
 
 /// Σ of all lights' irradiance (from both sides), and the estimates by choosing one.
@@ -177,7 +198,7 @@ fn lights_without_light_are_never_chosen() {
     all.push(Light::Point(PointLight { position: Vec3::Z, intensity: constant(1.0) }));
     let lights = Lights::build(all);
     let id = Id::new(lights.len() - 1);
-    assert_eq!(lights.pmf(&points()[0], id), 1.0);
+    assert_eq!(lights.pmf(ByTexture, &points()[0], id), 1.0);
     assert_eq!(lights.sample(ByTexture, &points()[0], 0.999, Vec2::ZERO, &wavelengths()).unwrap().pdf, 1.0);
     assert!(
         Lights::build(Vec::new()).sample(ByTexture, &points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none()
@@ -193,11 +214,11 @@ fn degenerate_and_large_sets_build() {
     };
     let from = points()[0];
     for lights in [at(&|_| Vec3::ONE, 1000), at(&|i| Vec3::new(0.0, i as f32, 1.0), 1000)] {
-        let sum: f64 = ids(&lights).map(|id| f64::from(lights.pmf(&from, id))).sum();
+        let sum: f64 = ids(&lights).map(|id| f64::from(lights.pmf(ByTexture, &from, id))).sum();
         assert!((sum - 1.0).abs() < 1e-4);
     }
     let big = Lights::build(many(100_000, 1));
     let mut rng = Rng::new(1);
-    let found = (0..10_000).filter(|_| big.choose(&from, rng.f32()).is_some()).count();
+    let found = (0..10_000).filter(|_| big.choose(ByTexture, &from, rng.f32()).is_some()).count();
     assert!(found > 5_000, "{found}");
 }

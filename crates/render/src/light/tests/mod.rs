@@ -4,7 +4,7 @@ mod choice;
 mod irradiance;
 mod sampling;
 
-use super::LightStrategy::ByTexture;
+use super::LightStrategy::{ByTexture, Complementary};
 use super::*;
 use std::sync::Arc;
 use tenfold_geometry::{
