@@ -2,7 +2,7 @@
 
 use crate::{
     Options,
-    clock::{quantile, reset_peak, resident},
+    clock::{process_seconds, quantile, reset_peak, resident},
     library::{Embree, EmbreeMesh, EmbreeScene, Quality},
     meshes::Subject,
     trace::geometry,
@@ -15,8 +15,8 @@ const ENGINES: [&str; 3] = ["ours", "default", "high"];
 /// Each build runs in a process of its own, since memory once used is not always given back.
 pub(crate) fn compare(options: &Options) -> Result<(), String> {
     println!(
-        "{:>16} {:>8} {:>9} {:>7} {:>10} {:>10}",
-        "mesh", "engine", "seconds", "ratio", "peak MiB", "kept MiB"
+        "{:>16} {:>8} {:>9} {:>7} {:>9} {:>7} {:>10} {:>10}",
+        "mesh", "engine", "seconds", "ratio", "cpu s", "ratio", "peak MiB", "kept MiB"
     );
     for subject in &options.subjects {
         let mut rows = vec![Vec::new(); ENGINES.len()];
@@ -25,26 +25,30 @@ pub(crate) fn compare(options: &Options) -> Result<(), String> {
                 rows.push(spawn(subject, engine, options.threads)?);
             }
         }
-        let median = |rows: &[[f64; 3]], column: usize| {
+        let median = |rows: &[[f64; 4]], column: usize| {
             quantile(&rows.iter().map(|row| row[column]).collect::<Vec<_>>(), 0.5)
         };
         for (i, engine) in ENGINES.iter().enumerate() {
-            let ratios: Vec<f64> =
-                rows[0].iter().zip(&rows[i]).map(|(ours, theirs)| ours[0] / theirs[0]).collect();
+            let ratio = |column: usize| {
+                let ratios = rows[0].iter().zip(&rows[i]).map(|(ours, theirs)| ours[column] / theirs[column]);
+                quantile(&ratios.collect::<Vec<_>>(), 0.5)
+            };
             println!(
-                "{subject:>16} {engine:>8} {:9.4} {:7.3} {:10.1} {:10.1}",
+                "{subject:>16} {engine:>8} {:9.4} {:7.3} {:9.4} {:7.3} {:10.1} {:10.1}",
                 median(&rows[i], 0),
-                quantile(&ratios, 0.5),
+                ratio(0),
                 median(&rows[i], 1),
+                ratio(1),
                 median(&rows[i], 2),
+                median(&rows[i], 3),
             );
         }
     }
     Ok(())
 }
 
-/// Seconds, and mebibytes at the peak and afterwards.
-fn spawn(subject: &str, engine: &str, threads: usize) -> Result<[f64; 3], String> {
+/// Seconds, those of all threads together, and mebibytes at the peak and afterwards.
+fn spawn(subject: &str, engine: &str, threads: usize) -> Result<[f64; 4], String> {
     let program = env::current_exe().map_err(|e| e.to_string())?;
     let threads = threads.to_string();
     let output = Command::new(program)
@@ -68,11 +72,11 @@ pub(crate) fn child(embree: &Embree, options: &Options) -> Result<(), String> {
     let report = |run: &mut dyn FnMut()| {
         reset_peak();
         let before = resident()[0];
-        let start = Instant::now();
+        let (start, before_all) = (Instant::now(), process_seconds());
         run();
-        let seconds = start.elapsed().as_secs_f64();
+        let (seconds, all) = (start.elapsed().as_secs_f64(), process_seconds() - before_all);
         let mebibytes = resident().map(|bytes| bytes.saturating_sub(before) as f64 / f64::from(1 << 20));
-        println!("{seconds} {} {}", mebibytes[1], mebibytes[0]);
+        println!("{seconds} {all} {} {}", mebibytes[1], mebibytes[0]);
     };
     if engine == "ours" {
         let mut desc = Some(WorldDesc { geometries: vec![geometry(parts, None)], ..WorldDesc::default() });

@@ -9,6 +9,19 @@ pub(crate) fn thread_seconds() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
+/// Seconds that all threads of this process ran.
+#[cfg(unix)]
+pub(crate) fn process_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+/// Not known here.
+#[cfg(not(unix))]
+pub(crate) fn process_seconds() -> f64 {
+    0.0
+}
+
 /// Seconds that passed.
 #[cfg(not(unix))]
 pub(crate) fn thread_seconds() -> f64 {

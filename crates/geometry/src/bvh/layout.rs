@@ -2,16 +2,13 @@
 
 use super::{
     Bvh,
-    build::{Counts, Inner, Reference, Target, Tree},
+    build::{Counts, Hull, Inner, Reference, Target, Tree, Word},
     node::{Child, Kind, LeafPrimitive, Node, TriangleBlock},
     with_capacity,
 };
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use tenfold_math::{Bounds3, Vec3};
-
-/// Subtrees with more nodes are laid out on several threads.
-const PARALLEL: usize = 512;
 
 /// Where a subtree goes: parts of the arrays, and the indices where they begin.
 struct Room<'a> {
@@ -38,6 +35,13 @@ impl<'a> Room<'a> {
     }
 }
 
+impl Room<'_> {
+    fn assert_full(&self) {
+        let left = self.nodes.len() + self.blocks.len() + self.shapes.len();
+        assert!(left == 0, "more room than was counted");
+    }
+}
+
 /// What is laid out.
 struct Source<'a, P> {
     references: &'a [Reference],
@@ -46,27 +50,27 @@ struct Source<'a, P> {
 
 /// The hierarchy of a tree over sorted references. `positions` gives the corners of triangles.
 pub(super) fn lay_out(
-    root: &Inner,
+    tree: &Tree,
     bounds: Bounds3,
     references: &[Reference],
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) -> Bvh {
-    let counts = root.counts;
+    let counts = tree.counts();
     let mut bvh = Bvh {
         nodes: with_capacity(counts.nodes),
         blocks: with_capacity(counts.blocks),
         shapes: Vec::with_capacity(counts.shapes),
         bounds,
     };
-    let mut room = Room {
+    let room = Room {
         nodes: &mut bvh.nodes.spare_capacity_mut()[..counts.nodes],
         blocks: &mut bvh.blocks.spare_capacity_mut()[..counts.blocks],
         shapes: &mut bvh.shapes.spare_capacity_mut()[..counts.shapes],
         first: Counts::default(),
     };
-    Source { references, positions }.node(root, room.take(counts));
+    Source { references, positions }.tree(tree, room);
     // SAFETY: every subtree writes all elements of its room, whose sizes are those that its nodes and leaves were counted to; `Room::take`
-    // panics where there is less, and `Source::node` where there is more.
+    // panics where there is less, and `Room::assert_full` where there is more.
     unsafe {
         bvh.nodes.set_len(counts.nodes);
         bvh.blocks.set_len(counts.blocks);
@@ -76,34 +80,67 @@ pub(super) fn lay_out(
 }
 
 impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
+    /// A tree whose root is a node.
+    fn tree(&self, tree: &Tree, mut room: Room<'_>) {
+        match tree {
+            Tree::Node(inner) => self.node(inner, room),
+            Tree::Bulk(bulk) => {
+                self.bulk(&mut bulk.words.iter(), bulk.first, &mut room);
+                room.assert_full();
+            }
+            Tree::Leaf { .. } => {}
+        }
+    }
+
     fn node(&self, inner: &Inner, mut room: Room<'_>) {
         let own = room.take(Counts { nodes: 1, ..Counts::default() });
         let mut node = Node::EMPTY;
         let mut below = Vec::new();
         for (slot, (bounds, tree)) in inner.children.iter().enumerate() {
             let child = match tree {
-                Tree::Node(inner) => {
-                    let room = room.take(inner.counts);
+                Tree::Leaf { first, len } => self.leaf(&self.references[*first..first + len], &mut room),
+                _ => {
+                    let room = room.take(tree.counts());
                     let child = Child::new(Kind::Node, room.first.nodes);
-                    below.push((inner, room));
+                    below.push((tree, room));
                     child
-                }
-                Tree::Leaf { first, len } => {
-                    let first = *first as usize;
-                    self.leaf(&self.references[first..first + *len as usize], &mut room)
                 }
             };
             node.set(slot, bounds, child);
         }
         own.nodes[0].write(node);
-        assert!(
-            room.nodes.is_empty() && room.blocks.is_empty() && room.shapes.is_empty(),
-            "more room than was counted"
-        );
-        match inner.counts.nodes > PARALLEL {
-            true => below.into_par_iter().for_each(|(inner, room)| self.node(inner, room)),
-            false => below.into_iter().for_each(|(inner, room)| self.node(inner, room)),
+        room.assert_full();
+        below.into_par_iter().for_each(|(tree, room)| self.tree(tree, room));
+    }
+
+    /// A node, whose first reference is `first`, and all below it. Returns the box around it.
+    fn bulk(&self, words: &mut std::slice::Iter<'_, Word>, first: usize, room: &mut Room<'_>) -> Bounds3 {
+        let own = room.take(Counts { nodes: 1, ..Counts::default() });
+        let mut node = Node::EMPTY;
+        let count = words.next().map_or(0, |word| word.len());
+        let children = &words.as_slice()[..count];
+        *words = words.as_slice()[count..].iter();
+        let mut all = Hull::EMPTY;
+        // The leaves of a node lie side by side.
+        for is_node in [false, true] {
+            let mut first = first;
+            for (slot, child) in children.iter().enumerate() {
+                if child.is_node() && is_node {
+                    let index = room.first.nodes;
+                    let bounds = self.bulk(words, first, room);
+                    node.set(slot, &bounds, Child::new(Kind::Node, index));
+                    all = all.union(&Hull::new(bounds));
+                } else if !child.is_node() && !is_node {
+                    let leaf = &self.references[first..first + child.len()];
+                    let hull = leaf.iter().fold(Hull::EMPTY, |hull, r| hull.union(r.hull()));
+                    node.set(slot, &hull.bounds(), self.leaf(leaf, room));
+                    all = all.union(&hull);
+                }
+                first += child.len();
+            }
         }
+        own.nodes[0].write(node);
+        all.bounds()
     }
 
     fn leaf(&self, leaf: &[Reference], room: &mut Room<'_>) -> Child {

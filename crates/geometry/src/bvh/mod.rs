@@ -46,8 +46,8 @@ impl Bvh {
             };
         }
         build::presplit(&mut references, &positions);
-        let (bounds, root) = build::build(&mut references);
-        layout::lay_out(&root, bounds, &references, &positions)
+        let (bounds, tree) = build::build(&mut references);
+        layout::lay_out(&tree, bounds, &references, &positions)
     }
 
     /// A box around everything.

@@ -16,6 +16,12 @@ pub(super) trait Vector: Copy {
     fn min(self, b: Self) -> Self;
     fn max(self, b: Self) -> Self;
     fn abs(self) -> Self;
+    /// With 0 in the fourth and the last lane.
+    fn corners(self) -> Self;
+    /// The last four before the first four.
+    fn swap_halves(self) -> Self;
+    /// Rounded towards zero; for numbers that an `i32` can hold.
+    fn truncate(self) -> [i32; WIDTH];
     /// Bit `i` tells whether `self[i] <= b[i]`; false for NaN.
     fn le(self, b: Self) -> u32;
     /// Bit `i` tells whether `self[i] < b[i]`; false for NaN.
@@ -149,6 +155,18 @@ impl Vector for Array {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn corners(self) -> Self {
+        Self(std::array::from_fn(|i| if i % 4 == 3 { 0.0 } else { self.0[i] }))
+    }
+    #[inline(always)]
+    fn swap_halves(self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i ^ 4]))
+    }
+    #[inline(always)]
+    fn truncate(self) -> [i32; WIDTH] {
+        self.0.map(|x| x as i32)
     }
     #[inline(always)]
     fn le(self, b: Self) -> u32 {
@@ -310,6 +328,20 @@ mod avx2 {
         #[inline(always)]
         fn abs(self) -> Self {
             Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn corners(self) -> Self {
+            Self(unsafe { _mm256_blend_ps::<0b1000_1000>(self.0, _mm256_setzero_ps()) })
+        }
+        #[inline(always)]
+        fn swap_halves(self) -> Self {
+            Self(unsafe { _mm256_permute2f128_ps::<1>(self.0, self.0) })
+        }
+        #[inline(always)]
+        fn truncate(self) -> [i32; WIDTH] {
+            let mut a = [0; WIDTH];
+            unsafe { _mm256_storeu_si256(a.as_mut_ptr().cast(), _mm256_cvttps_epi32(self.0)) };
+            a
         }
         #[inline(always)]
         fn le(self, b: Self) -> u32 {

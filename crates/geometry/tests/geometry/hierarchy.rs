@@ -40,7 +40,7 @@ fn finds_what_trying_everything_finds() {
 #[test]
 fn does_not_depend_on_the_number_of_threads() {
     let mut rng = Rng::new(7);
-    let shape = triangles(&mut rng, Transform::IDENTITY, 30_000, 0.05);
+    let shape = triangles(&mut rng, Transform::IDENTITY, 100_000, 0.05);
     let desc = WorldDesc { geometries: vec![still(shape, 0)], ..WorldDesc::default() };
     let with_threads = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
@@ -86,7 +86,7 @@ fn coincident_primitives_are_all_found() {
         positions: vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)],
         ..MeshParts::default()
     };
-    for _ in 0..5000 {
+    for _ in 0..70_000 {
         parts.indices.extend([0, 1, 2]);
     }
     let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
@@ -99,7 +99,7 @@ fn coincident_primitives_are_all_found() {
         seen.set(seen.get() + 1);
         false
     });
-    assert_eq!((hit, seen.get()), (None, 5000));
+    assert_eq!((hit, seen.get()), (None, 70_000));
     assert_eq!(
         world.intersect(&ray, f32::INFINITY, |c| c.hit.primitive.index == 77).unwrap().primitive.index,
         77
@@ -127,6 +127,31 @@ fn strongly_uneven_scenes_stay_within_the_stack() {
         let hit = world.intersect(&ray, f32::INFINITY, |_| true);
         assert_eq!(hit.map(|h| h.t), brute_force(&desc, &ray, f32::INFINITY).map(|w| w.0));
     }
+}
+
+#[test]
+fn crowds_inside_crowds_are_found() {
+    // Of each crowd, all of the next are in one cell of any grid.
+    let mut rng = Rng::new(13);
+    let scales = [1.0, 0.015, 2e-4];
+    let geometries = scales.map(|scale| {
+        let t = Transform::scale(Vec3::splat(scale)).unwrap();
+        still(triangles(&mut rng, t, 70_000, 0.02), 0)
+    });
+    let desc = WorldDesc { geometries: geometries.into(), ..WorldDesc::default() };
+    let world = World::build(desc.clone()).unwrap();
+    let portable = World::build(desc.clone()).unwrap().portable();
+    let mut hits = 0;
+    for i in 0..90 {
+        let scale = scales[i % 3];
+        let origin = 3.0 * scale * rng.direction();
+        let ray = Ray::new(origin, scale * in_box(&mut rng, 0.5) - origin, 0.0);
+        let hit = world.intersect(&ray, f32::INFINITY, |_| true);
+        assert_eq!(hit.map(|h| (h.t, h.primitive)), brute_force(&desc, &ray, f32::INFINITY));
+        assert_eq!(portable.intersect(&ray, f32::INFINITY, |_| true), hit);
+        hits += usize::from(hit.is_some());
+    }
+    assert!(hits > 60, "{hits} hits");
 }
 
 #[test]

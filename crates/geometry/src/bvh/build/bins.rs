@@ -1,125 +1,297 @@
 //! The surface area heuristic over bins (Wald 2007).
 
-use super::reference::{Box4, Reference};
-use crate::bvh::node::LANES;
-use glam::Vec4;
-use rayon::prelude::*;
+use super::{
+    hull::{Hull, middle},
+    pair::Pair,
+    reference::Reference,
+};
+use crate::bvh::{
+    node::LANES,
+    simd::{Portable, Simd, Vector},
+    traverse::Level,
+};
+use std::mem::MaybeUninit;
 
 /// Most bins along each axis.
 const BINS: usize = 32;
-/// Larger ranges are counted on several threads.
-const PARALLEL: usize = 1 << 14;
 
-/// A plane between two bins.
-#[derive(Copy, Clone, Debug)]
-pub(super) struct Split {
-    bins: Bins,
-    axis: usize,
-    /// Bins below this go to the first half.
-    bin: usize,
+/// What bins count: something in a box.
+pub(super) trait Item: Copy {
+    fn hull(&self) -> &Hull;
+    /// How many references it stands for.
+    fn count(&self) -> u32;
 }
 
-impl Split {
-    /// Whether a reference goes to the first half.
+impl Item for Reference {
     #[inline(always)]
-    pub(super) fn is_low(&self, reference: &Reference) -> bool {
-        self.bins.index(reference.middle(), self.axis) < self.bin
+    fn hull(&self) -> &Hull {
+        self.hull()
+    }
+    #[inline(always)]
+    fn count(&self) -> u32 {
+        1
     }
 }
 
 /// Equal slabs along each axis.
 #[derive(Copy, Clone, Debug)]
 struct Bins {
-    origin: Vec4,
-    scale: Vec4,
+    origin: Hull,
+    scale: Hull,
     count: usize,
 }
 
 impl Bins {
-    /// For `n` references with their doubled middles in `middles`.
-    fn new(middles: &Box4, n: usize) -> Self {
-        // Few references do not need many bins.
+    /// For `n` items whose doubled middles are in `middles`.
+    #[inline(always)]
+    fn new(middles: &Hull, n: usize) -> Self {
+        // Few items do not need many bins.
         let count = (4 + n / 4).min(BINS);
-        // An axis without extent gets scale 0: everything falls in bin 0.
-        let scale = |d: f32| if d > 0.0 { count as f32 * 0.999_99 / d } else { 0.0 };
-        let d = middles.high - middles.low;
-        Self { origin: middles.low, scale: Vec4::new(scale(d.x), scale(d.y), scale(d.z), 0.0), count }
-    }
-
-    #[inline(always)]
-    fn index(&self, middle: Vec4, axis: usize) -> usize {
-        // The cast saturates, and makes 0 of NaN.
-        let x = (middle.to_array()[axis] - self.origin.to_array()[axis]) * self.scale.to_array()[axis];
-        (x as i32).clamp(0, self.count as i32 - 1) as usize
-    }
-}
-
-#[derive(Copy, Clone)]
-struct Bin {
-    bounds: Box4,
-    count: u32,
-}
-
-impl Bin {
-    const EMPTY: Self = Self { bounds: Box4::EMPTY, count: 0 };
-
-    #[inline(always)]
-    fn union(self, b: Self) -> Self {
-        Self { bounds: self.bounds.union(b.bounds), count: self.count + b.count }
-    }
-}
-
-type Histogram = [[Bin; BINS]; 3];
-
-fn histogram(references: &[Reference], bins: &Bins) -> Histogram {
-    let mut histogram = [[Bin::EMPTY; BINS]; 3];
-    for reference in references {
-        for (axis, row) in histogram.iter_mut().enumerate() {
-            let bin = &mut row[bins.index(reference.middle(), axis) % BINS];
-            bin.bounds = bin.bounds.union(reference.bounds());
-            bin.count += 1;
+        let mut scale = [0.0; 8];
+        for (axis, scale) in scale[..3].iter_mut().enumerate() {
+            let d = -(middles.0[axis] + middles.0[axis + 4]);
+            // An axis without extent gets scale 0: everything falls in bin 0.
+            *scale = if d > 0.0 { count as f32 * 0.999_99 / d } else { 0.0 };
         }
+        Self { origin: *middles, scale: Hull(scale), count }
     }
-    histogram
+
+    /// In which bins on the three axes an item is whose doubled middle is given: the first three components, when truncated.
+    #[inline(always)]
+    fn place<V: Vector>(&self, middle: V) -> V {
+        let x = middle.sub(self.origin.load()).mul(self.scale.load());
+        // The first makes 0 of what is not a number.
+        x.max(V::splat(0.0)).min(V::splat((self.count - 1) as f32))
+    }
 }
 
-/// Leaf blocks that `n` triangles need.
-fn blocks(n: u32) -> f32 {
-    n.div_ceil(LANES as u32) as f32
+/// A plane between two bins.
+#[derive(Copy, Clone, Debug)]
+struct Split {
+    bins: Bins,
+    axis: usize,
+    /// Bins below this go to the first half.
+    bin: usize,
 }
 
-/// The cheapest plane; `None` where all middles coincide.
-pub(super) fn best_split(references: &[Reference], middles: &Box4) -> Option<Split> {
-    let bins = Bins::new(middles, references.len());
-    let histogram = if references.len() > PARALLEL {
-        // Minimum, maximum and sums of integers do not depend on the order.
-        references.par_chunks(PARALLEL).map(|chunk| histogram(chunk, &bins)).reduce_with(|mut a, b| {
-            a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(a, b)| *a = a.union(*b));
-            a
-        })?
-    } else {
-        histogram(references, &bins)
-    };
-    let mut best: Option<(Split, f32)> = None;
-    for (axis, row) in histogram.iter().enumerate() {
-        let row = &row[..bins.count];
-        let mut high_cost = [0f32; BINS];
-        let mut high = Bin::EMPTY;
-        for i in (1..bins.count).rev() {
-            high = high.union(row[i]);
-            high_cost[i] = high.bounds.half_area() * blocks(high.count);
+/// What bins hold.
+struct Histogram {
+    hulls: [[Hull; BINS]; 3],
+    counts: [[u32; BINS]; 3],
+}
+
+impl Histogram {
+    #[inline(always)]
+    fn of<V: Vector, T: Item>(items: &[T], bins: &Bins) -> Self {
+        let mut histogram = Self { hulls: [[Hull::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
+        for item in items {
+            let hull: V = item.hull().load();
+            let place = bins.place(middle(hull)).truncate();
+            for (axis, bin) in place[..3].iter().enumerate() {
+                let bin = *bin as usize % BINS;
+                let bounds = &mut histogram.hulls[axis][bin];
+                *bounds = Hull::store(bounds.load::<V>().min(hull));
+                histogram.counts[axis][bin] += item.count();
+            }
         }
-        let mut low = Bin::EMPTY;
-        for i in 1..bins.count {
-            low = low.union(row[i - 1]);
-            if low.count == 0 || low.count as usize == references.len() {
+        histogram
+    }
+
+    /// The cheapest plane; `None` where all middles coincide.
+    #[inline(always)]
+    fn best<V: Vector>(&self, bins: Bins) -> Option<(Split, [Hull; 2])> {
+        let mut best: Option<(Split, f32)> = None;
+        for axis in 0..3 {
+            if bins.scale.0[axis] == 0.0 {
                 continue;
             }
-            let cost = low.bounds.half_area() * blocks(low.count) + high_cost[i];
-            if best.is_none_or(|(_, b)| cost < b) {
-                best = Some((Split { bins, axis, bin: i }, cost));
+            let (hulls, counts) = (&self.hulls[axis], &self.counts[axis]);
+            let mut high_cost = [f32::INFINITY; BINS];
+            let (mut high, mut n) = (V::splat(f32::INFINITY), 0);
+            for i in (1..bins.count).rev() {
+                high = high.min(hulls[i].load());
+                n += counts[i];
+                if n > 0 {
+                    high_cost[i] = cost(Hull::store(high), n);
+                }
+            }
+            let (mut low, mut n) = (V::splat(f32::INFINITY), 0);
+            for i in 1..bins.count {
+                low = low.min(hulls[i - 1].load());
+                n += counts[i - 1];
+                // A half with nothing in it costs infinitely much.
+                if n == 0 || high_cost[i] == f32::INFINITY {
+                    continue;
+                }
+                let cost = cost(Hull::store(low), n) + high_cost[i];
+                if best.is_none_or(|(_, b)| cost < b) {
+                    best = Some((Split { bins, axis, bin: i }, cost));
+                }
             }
         }
+        let (split, _) = best?;
+        let union = |hulls: &[Hull]| {
+            Hull::store(hulls.iter().fold(V::splat(f32::INFINITY), |union, hull| union.min(hull.load())))
+        };
+        let (low, high) = self.hulls[split.axis][..bins.count].split_at(split.bin);
+        Some((split, [union(low), union(high)]))
     }
-    best.map(|(split, _)| split)
+}
+
+/// What a half with `n` triangles costs: its area times the leaf blocks that they need.
+#[inline(always)]
+fn cost(hull: Hull, n: u32) -> f32 {
+    hull.half_area() * n.div_ceil(LANES as u32) as f32
+}
+
+/// Half of some items.
+pub(super) struct Half<'a, T> {
+    pub(super) items: Pair<'a, T>,
+    pub(super) bounds: Hull,
+    /// Around the doubled middles.
+    pub(super) middles: Hull,
+}
+
+/// Splits items at the cheapest plane. Gives them back where their doubled `middles` coincide.
+pub(super) fn split<'a, T: Item>(
+    level: Level,
+    mut items: Pair<'a, T>,
+    middles: &Hull,
+) -> Result<[Half<'a, T>; 2], Pair<'a, T>> {
+    let (from, to) = items.sides();
+    let sorted = match level {
+        Level::Portable => sort::<Portable, T>(from, middles, to),
+        // SAFETY: the token proves that the machine has AVX2.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(_) => unsafe { sort_avx2(from, middles, to) },
+    };
+    let Some(sorted) = sorted else { return Err(items) };
+    // SAFETY: all of the room was written.
+    let [low, high] = unsafe { items.swapped() }.split_at(sorted.low);
+    let [low_bounds, high_bounds] = sorted.bounds;
+    let [low_middles, high_middles] = sorted.middles;
+    Ok([
+        Half { items: low, bounds: low_bounds, middles: low_middles },
+        Half { items: high, bounds: high_bounds, middles: high_middles },
+    ])
+}
+
+/// What became of items that were split.
+struct Sorted {
+    /// How many are in the first half.
+    low: usize,
+    bounds: [Hull; 2],
+    middles: [Hull; 2],
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+fn sort_avx2<T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Sorted> {
+    sort::<crate::bvh::simd::Avx2, T>(items, middles, to)
+}
+
+/// Writes all of `to`, as large as `items`: first those below the plane. `None`, and nothing written, where there is no plane.
+#[inline(always)]
+fn sort<S: Simd, T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Sorted> {
+    let bins = Bins::new(middles, items.len());
+    let (split, bounds) = Histogram::of::<S::F8, T>(items, &bins).best::<S::F8>(bins)?;
+    let (low, middles) = partition::<S::F8, T>(items, &split, to);
+    Some(Sorted { low, bounds, middles })
+}
+
+/// The maximum with the first is not in the way of any minimum; that with the second changes nothing.
+static BARRIER: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// Writes the low items to the front and the others to the back. Every item is written to both places, and the one that it does not belong
+/// to is written again: cheaper than branches that cannot be foretold.
+#[inline(always)]
+fn partition<V: Vector, T: Item>(
+    items: &[T],
+    split: &Split,
+    to: &mut [MaybeUninit<T>],
+) -> (usize, [Hull; 2]) {
+    let to = &mut to[..items.len()];
+    let plane = V::splat(split.bin as f32);
+    let (mut i, mut j) = (0, items.len());
+    let mut middles = [V::splat(f32::INFINITY); 2];
+    for item in items {
+        let middle = middle(item.hull().load::<V>());
+        let is_low = split.bins.place(middle).lt(plane) >> split.axis & 1;
+        to[i].write(*item);
+        to[j - 1].write(*item);
+        middles[0] = middles[0].min(middle.max(V::splat(BARRIER[is_low as usize])));
+        middles[1] = middles[1].min(middle.max(V::splat(BARRIER[1 - is_low as usize])));
+        i += is_low as usize;
+        j -= 1 - is_low as usize;
+    }
+    (i, middles.map(Hull::store))
+}
+
+/// The hulls around items, and around their doubled middles.
+pub(super) fn around<T: Item>(level: Level, items: &[T]) -> [Hull; 2] {
+    match level {
+        Level::Portable => around_with::<Portable, T>(items),
+        // SAFETY: the token proves that the machine has AVX2.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(_) => unsafe { around_avx2(items) },
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+fn around_avx2<T: Item>(items: &[T]) -> [Hull; 2] {
+    around_with::<crate::bvh::simd::Avx2, T>(items)
+}
+
+#[inline(always)]
+fn around_with<S: Simd, T: Item>(items: &[T]) -> [Hull; 2] {
+    let mut around = [S::F8::splat(f32::INFINITY); 2];
+    for item in items {
+        let hull: S::F8 = item.hull().load();
+        around = [around[0].min(hull), around[1].min(middle(hull))];
+    }
+    around.map(Hull::store)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{build::Target, node::LeafPrimitive};
+    use tenfold_math::Bounds3;
+    use tenfold_testkit::Rng;
+
+    #[test]
+    fn all_levels_split_alike_and_well() {
+        let mut rng = Rng::new(1);
+        for n in 2..200 {
+            let mut reference = |i| {
+                let p = rng.vec3() - 0.5;
+                let bounds = Bounds3::around([p, p + 0.1 * rng.vec3()]);
+                Reference::new(bounds, Target::Triangle(LeafPrimitive::new(i, u32::MAX - i, i % 2 == 0)))
+            };
+            let references: Vec<Reference> = (0..n).map(&mut reference).collect();
+            let split = |level: Level| {
+                let mut items = references.clone();
+                let mut room = Vec::with_capacity(items.len());
+                let [_, middles] = around(level, &items);
+                let pair = Pair::new(&mut items, room.spare_capacity_mut());
+                let halves = split(level, pair, &middles).ok().expect("a plane");
+                let mut targets: Vec<String> = Vec::new();
+                for half in &halves {
+                    let items = half.items.items();
+                    assert!(!items.is_empty());
+                    let [bounds, middles] = around(Level::Portable, items);
+                    assert_eq!(half.bounds.bounds(), bounds.bounds());
+                    assert_eq!(half.middles.bounds(), middles.bounds());
+                    targets.extend(items.iter().map(|r| format!("{:?}", r.target())));
+                }
+                let mut sorted = targets.clone();
+                sorted.sort();
+                sorted.dedup();
+                assert_eq!(sorted.len(), n as usize);
+                targets
+            };
+            assert_eq!(split(Level::Portable), split(Level::detect()));
+        }
+    }
 }

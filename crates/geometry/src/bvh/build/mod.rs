@@ -1,39 +1,84 @@
 //! Building: long triangles are cut first, then the tree grows top-down, straight to eight children.
 
 mod bins;
+mod grid;
+mod hull;
+mod pair;
 mod presplit;
+mod range;
 mod reference;
 
+pub(super) use hull::Hull;
 pub(crate) use presplit::presplit;
 pub(crate) use reference::{Reference, Target, padded};
 
-use super::node::{LANES, WIDTH};
-use bins::{Split, best_split};
+use super::{node::WIDTH, traverse::Level, with_capacity};
+use range::Range;
 use rayon::prelude::*;
-use reference::Box4;
+use std::mem::MaybeUninit;
 use tenfold_math::Bounds3;
 
-/// Ranges with more references are split on several threads.
-const PARALLEL: usize = 4096;
+/// Subtrees of at most this many references are built by one thread.
+const ALONE: usize = 4096;
 /// No path from the root is longer, in nodes: what the traversal's stack is made for.
 pub(super) const MAX_DEPTH: usize = 18;
 
-/// A tree of nodes and leaves before it is laid out.
+/// A tree over the sorted references before it is laid out.
 pub(super) enum Tree {
     Node(Box<Inner>),
-    /// A range of the sorted references.
+    /// A tree whose root is a node, written down as numbers.
+    Bulk(Bulk),
+    /// A range of references.
     Leaf {
         /// Index of the first.
-        first: u32,
+        first: usize,
         /// How many there are.
-        len: u32,
+        len: usize,
     },
+}
+
+impl Tree {
+    /// How much it holds; for what is more than a leaf.
+    pub(super) fn counts(&self) -> Counts {
+        match self {
+            Self::Node(inner) => inner.counts,
+            Self::Bulk(bulk) => bulk.counts,
+            Self::Leaf { .. } => Counts::default(),
+        }
+    }
 }
 
 /// A node of the tree.
 pub(super) struct Inner {
     pub(super) children: Vec<(Bounds3, Tree)>,
     pub(super) counts: Counts,
+}
+
+/// A tree whose leaves follow each other in the references.
+pub(super) struct Bulk {
+    /// The nodes, depth first: how many children, and of each a [`Word`].
+    pub(super) words: Vec<Word>,
+    /// Index of the first reference.
+    pub(super) first: usize,
+    pub(super) counts: Counts,
+}
+
+/// How many references a child holds, and whether it is a node.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Word(u32);
+
+impl Word {
+    fn new(len: usize, is_node: bool) -> Self {
+        Self((len as u32) << 1 | u32::from(is_node))
+    }
+
+    pub(super) fn len(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    pub(super) fn is_node(self) -> bool {
+        self.0 & 1 != 0
+    }
 }
 
 /// How much a tree holds.
@@ -54,90 +99,79 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Some references and what is around them.
-struct Range<'a> {
-    references: &'a mut [Reference],
-    /// Index of the first of them among all.
-    first: usize,
-    bounds: Box4,
-    middles: Box4,
+/// Sorts the references and builds a tree over them; there must be at least one reference.
+pub(super) fn build(references: &mut [Reference]) -> (Bounds3, Tree) {
+    let mut other = with_capacity(references.len());
+    let range = Range::all(Level::detect(), references, other.spare_capacity_mut());
+    (range.bounds(), tree(range, 0))
 }
 
-impl<'a> Range<'a> {
-    fn new(references: &'a mut [Reference], first: usize) -> Self {
-        let around = |references: &[Reference]| {
-            references.iter().fold((Box4::EMPTY, Box4::EMPTY), |(bounds, middles), r| {
-                (bounds.union(r.bounds()), middles.include(r.middle()))
-            })
-        };
-        let (bounds, middles) = if references.len() > PARALLEL {
-            // Minimum and maximum do not depend on the order.
-            references
-                .par_chunks(PARALLEL)
-                .map(around)
-                .reduce(|| (Box4::EMPTY, Box4::EMPTY), |a, b| (a.0.union(b.0), a.1.union(b.1)))
+/// A tree whose root is a node.
+fn tree(range: Range<'_>, depth: usize) -> Tree {
+    if range.len() <= ALONE {
+        let mut bulk = Bulk { words: Vec::new(), first: range.first(), counts: Counts::default() };
+        bulk.grow(range, depth);
+        return Tree::Bulk(bulk);
+    }
+    let grow = |mut range: Range<'_>| {
+        let bounds = range.bounds();
+        let mut counts = Counts::default();
+        let tree = if range.fits_leaf() {
+            range.finish(&mut counts);
+            Tree::Leaf { first: range.first(), len: range.len() }
         } else {
-            around(references)
+            let tree = tree(range, depth + 1);
+            counts += tree.counts();
+            tree
         };
-        Self { references, first, bounds, middles }
-    }
+        (counts, (bounds, tree))
+    };
+    let grown: Vec<_> = open(range, depth).into_par_iter().map(grow).collect();
+    let mut counts = Counts { nodes: 1, ..Counts::default() };
+    grown.iter().for_each(|(below, _)| counts += *below);
+    Tree::Node(Box::new(Inner { children: grown.into_iter().map(|(_, child)| child).collect(), counts }))
+}
 
-    fn len(&self) -> usize {
-        self.references.len()
-    }
-
-    /// Whether one leaf can hold all of it.
-    fn fits_leaf(&self) -> bool {
-        self.len() <= 1 || (self.len() <= LANES && self.references.iter().all(Reference::is_triangle))
-    }
-
-    /// Splits by the heuristic; in the middle where that finds no plane, or where it must (`halve`).
-    fn split(self, halve: bool) -> [Range<'a>; 2] {
-        let split = if halve { None } else { best_split(self.references, &self.middles) };
-        let Self { references, first, middles, .. } = self;
-        match split {
-            Some(split) => {
-                let ([low_bounds, low_middles], [high_bounds, high_middles], k) =
-                    partition(references, &split);
-                let (low, high) = references.split_at_mut(k);
-                [
-                    Range { references: low, first, bounds: low_bounds, middles: low_middles },
-                    Range { references: high, first: first + k, bounds: high_bounds, middles: high_middles },
-                ]
-            }
-            None => {
-                let axis = middles.bounds().longest_axis();
-                let k = references.len() / 2;
-                // A total order: the result must not depend on the algorithm's whims.
-                references.select_nth_unstable_by(k, |a, b| a.cmp_along(b, axis));
-                let (low, high) = references.split_at_mut(k);
-                [Range::new(low, first), Range::new(high, first + k)]
+impl Bulk {
+    fn grow(&mut self, range: Range<'_>, depth: usize) {
+        self.counts.nodes += 1;
+        let children = open(range, depth);
+        self.words.push(Word::new(children.len(), true));
+        self.words.extend(children.iter().map(|child| Word::new(child.len(), !child.fits_leaf())));
+        for mut child in children {
+            match child.fits_leaf() {
+                true => child.finish(&mut self.counts),
+                false => self.grow(child, depth + 1),
             }
         }
     }
 }
 
-/// Moves the low ones to the front; returns bounds of boxes and of middles of both halves, and how many are low.
-fn partition(references: &mut [Reference], split: &Split) -> ([Box4; 2], [Box4; 2], usize) {
-    let (mut low, mut high) = ([Box4::EMPTY; 2], [Box4::EMPTY; 2]);
-    let add = |to: &mut [Box4; 2], r: &Reference| {
-        *to = [to[0].union(r.bounds()), to[1].include(r.middle())];
-    };
-    let (mut i, mut j) = (0, references.len());
-    loop {
-        while i < j && split.is_low(&references[i]) {
-            add(&mut low, &references[i]);
-            i += 1;
-        }
-        while i < j && !split.is_low(&references[j - 1]) {
-            add(&mut high, &references[j - 1]);
-            j -= 1;
-        }
-        if i >= j {
-            return (low, high, i);
-        }
-        references.swap(i, j - 1);
+/// Splits until there are eight ranges or all fit leaves; they stay in order.
+fn open(range: Range<'_>, depth: usize) -> Vec<Range<'_>> {
+    // Deep down only halving keeps within the depth.
+    let halve = depth + levels(range.len()) + 1 >= MAX_DEPTH;
+    let mut ranges = Vec::with_capacity(WIDTH);
+    ranges.push(range);
+    while ranges.len() < WIDTH {
+        let Some(next) = next_to_split(&ranges, halve) else { break };
+        let [low, high] = ranges.remove(next).split(halve);
+        ranges.insert(next, high);
+        ranges.insert(next, low);
     }
+    ranges
+}
+
+/// The range to split next: that of largest box, or the one with most references; `None` where all fit leaves.
+fn next_to_split(ranges: &[Range<'_>], by_count: bool) -> Option<usize> {
+    let mut best: Option<(usize, f32)> = None;
+    for (i, range) in ranges.iter().enumerate().filter(|(_, range)| !range.fits_leaf()) {
+        let size = if by_count { range.len() as f32 } else { range.half_area() };
+        if best.is_none_or(|(_, b)| size > b) {
+            best = Some((i, size));
+        }
+    }
+    best.map(|(i, _)| i)
 }
 
 /// How many levels of nodes `n` references need, with all nodes full.
@@ -149,57 +183,4 @@ fn levels(n: usize) -> usize {
         levels += 1;
     }
     levels
-}
-
-/// Sorts the references and builds a tree over them, whose root is a node; there must be at least one reference.
-pub(super) fn build(references: &mut [Reference]) -> (Bounds3, Box<Inner>) {
-    let range = Range::new(references, 0);
-    (range.bounds.bounds(), node(range, 0))
-}
-
-fn node(range: Range<'_>, depth: usize) -> Box<Inner> {
-    // Deep down only halving keeps within the depth.
-    let halve = depth + levels(range.len()) + 1 >= MAX_DEPTH;
-    let parallel = range.len() > PARALLEL;
-    let mut ranges = Vec::with_capacity(WIDTH);
-    ranges.push(range);
-    while ranges.len() < WIDTH {
-        let Some(next) = next_to_split(&ranges, halve) else { break };
-        let range = ranges.swap_remove(next);
-        ranges.extend(range.split(halve));
-    }
-    let grow = |range: Range<'_>| {
-        let bounds = range.bounds.bounds();
-        if !range.fits_leaf() {
-            let inner = node(range, depth + 1);
-            return (bounds, inner.counts, Tree::Node(inner));
-        }
-        let mut counts = Counts::default();
-        match range.references[0].target() {
-            Target::Triangle(_) => counts.blocks = 1,
-            Target::Shape(_) => counts.shapes = 1,
-            Target::Placement(_) => {}
-        }
-        (bounds, counts, Tree::Leaf { first: range.first as u32, len: range.len() as u32 })
-    };
-    let grown: Vec<_> = match parallel {
-        true => ranges.into_par_iter().map(grow).collect(),
-        false => ranges.into_iter().map(grow).collect(),
-    };
-    let mut counts = Counts { nodes: 1, ..Counts::default() };
-    grown.iter().for_each(|(_, below, _)| counts += *below);
-    let children = grown.into_iter().map(|(bounds, _, tree)| (bounds, tree)).collect();
-    Box::new(Inner { children, counts })
-}
-
-/// The range to split next: that of largest box, or the one with most references; `None` where all fit leaves.
-fn next_to_split(ranges: &[Range<'_>], by_count: bool) -> Option<usize> {
-    let mut best: Option<(usize, f32)> = None;
-    for (i, range) in ranges.iter().enumerate().filter(|(_, range)| !range.fits_leaf()) {
-        let size = if by_count { range.len() as f32 } else { range.bounds.half_area() };
-        if best.is_none_or(|(_, b)| size > b) {
-            best = Some((i, size));
-        }
-    }
-    best.map(|(i, _)| i)
 }

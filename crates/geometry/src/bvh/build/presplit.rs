@@ -1,5 +1,6 @@
 //! Cutting long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
 
+use super::hull::Hull;
 use super::reference::{Reference, Target, padded};
 use crate::bvh::node::LeafPrimitive;
 use rayon::prelude::*;
@@ -13,6 +14,10 @@ const OUTSTANDING: f32 = 2.0;
 const MOST: f32 = 63.0;
 /// The cutting planes are those of an octree of this depth.
 const LEVELS: u32 = 20;
+/// Boxes of this many times the mean area are large: only they are cut.
+const LARGE: f32 = 4.0;
+/// About so many triangles tell the mean priority.
+const SAMPLE: usize = 1 << 12;
 /// Triangles handled together by a thread.
 const CHUNK: usize = 4096;
 
@@ -70,27 +75,38 @@ pub(crate) fn presplit(
     references: &mut Vec<Reference>,
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) {
-    let bounds = references
-        .par_chunks(CHUNK)
-        .map(|chunk| chunk.iter().fold(Bounds3::EMPTY, |b, r| b.union(r.bounds().bounds())))
-        .reduce(|| Bounds3::EMPTY, Bounds3::union);
-    let octree = Octree { origin: bounds.min, size: bounds.diagonal().max_element() };
     let corners = |r: &Reference| match r.target() {
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
     };
-    let priorities: Vec<f32> =
-        references.par_iter().map(|r| corners(r).map_or(0.0, |p| octree.priority(p))).collect();
+    let around: Vec<(Hull, f64)> = references
+        .par_chunks(CHUNK)
+        .map(|chunk| {
+            chunk.iter().fold((Hull::EMPTY, 0.0), |(hull, area), r| {
+                (hull.union(r.hull()), area + f64::from(r.hull().half_area().sqrt()))
+            })
+        })
+        .collect();
     // Sums in a fixed order.
-    let sums: Vec<f64> =
-        priorities.par_chunks(CHUNK).map(|chunk| chunk.iter().map(|&p| f64::from(p)).sum()).collect();
-    let mean = (sums.iter().sum::<f64>() / references.len().max(1) as f64) as f32;
-    if !(mean > 0.0) {
-        return;
-    }
-    let count = |scale: f32| -> usize { priorities.par_iter().map(|&p| cuts(p, scale)).sum() };
+    let (hull, area) = around.iter().fold((Hull::EMPTY, 0.0), |a, b| (a.0.union(&b.0), a.1 + b.1));
+    let bounds = hull.bounds();
+    let octree = Octree { origin: bounds.min, size: bounds.diagonal().max_element() };
+    // Meshes of alike triangles have no large ones: looking at all corners would take long.
+    let large = LARGE * ((area / references.len() as f64) as f32).powi(2);
+    let large: Vec<(u32, f32)> = references
+        .par_iter()
+        .enumerate()
+        .filter(|(_, r)| r.hull().half_area() > large)
+        .map(|(i, r)| (i as u32, corners(r).map_or(0.0, |p| octree.priority(p))))
+        .collect();
+    let sample = references.iter().step_by(references.len().div_ceil(SAMPLE));
+    let (sum, count) = sample
+        .filter_map(corners)
+        .fold((0.0, 0), |(sum, count), p| (sum + f64::from(octree.priority(p)), count + 1));
+    let mean = (sum / f64::from(count.max(1))) as f32;
+    let count = |scale: f32| -> usize { large.iter().map(|&(_, p)| cuts(p, scale)).sum() };
     let budget = (EXTRA * references.len() as f32) as usize;
-    let mut scale = 1.0 / (OUTSTANDING * mean);
+    let mut scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
     if count(scale) > budget {
         let (mut low, mut high) = (0.0, scale);
         for _ in 0..16 {
@@ -99,25 +115,23 @@ pub(crate) fn presplit(
         }
         scale = low;
     }
-    let cut = |(chunk, priorities): (&mut [Reference], &[f32])| {
+    let cut = |&(index, priority): &(u32, f32)| {
+        let reference = &references[index as usize];
         let mut parts = Vec::new();
-        for (reference, &priority) in chunk.iter_mut().zip(priorities) {
-            let cuts = cuts(priority, scale);
-            if let (Some(corners), true) = (corners(reference), cuts > 0) {
-                let own = parts.len();
-                let size = Bounds3::around(corners).diagonal().max_element();
-                octree.cut(&corners, cuts, &mut |b| parts.push(reference.with_bounds(padded(b, size))));
-                // One of them takes the place of the whole.
-                *reference = parts.swap_remove(own);
-            }
+        if let (Some(corners), cuts @ 1..) = (corners(reference), cuts(priority, scale)) {
+            let size = Bounds3::around(corners).diagonal().max_element();
+            octree.cut(&corners, cuts, &mut |b| parts.push(reference.with_bounds(padded(b, size))));
         }
-        parts
+        (index, parts)
     };
-    let parts: Vec<Vec<Reference>> =
-        references.par_chunks_mut(CHUNK).zip(priorities.par_chunks(CHUNK)).map(cut).collect();
-    drop(priorities);
-    references.reserve_exact(parts.iter().map(Vec::len).sum());
-    parts.iter().for_each(|parts| references.extend(parts));
+    let parts: Vec<(u32, Vec<Reference>)> =
+        large.par_iter().map(cut).filter(|(_, parts)| !parts.is_empty()).collect();
+    references.reserve_exact(parts.iter().map(|(_, parts)| parts.len() - 1).sum());
+    for (index, mut parts) in parts {
+        // One of them takes the place of the whole.
+        references[index as usize] = parts.swap_remove(0);
+        references.extend(parts);
+    }
 }
 
 impl Octree {
