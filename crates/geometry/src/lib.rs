@@ -26,8 +26,8 @@ pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};
 pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
 pub use sample::{ReferencePoint, ShapeSample, SurfacePoint};
 pub use shape::{
-    BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Shape, ShapeError, ShapeHit,
-    Sphere, SphereParams, Triangle,
+    BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape, ShapeError,
+    ShapeHit, Sphere, SphereParams, Triangle,
 };
 pub use subdivision::{SubdivisionError, loop_subdivide};
 pub use world::{Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};

@@ -119,8 +119,12 @@ pub(crate) fn pdf_by_solid_angle(pdf_area: f32, to_light: Vec3, n: Vec3) -> f32 
     if pdf.is_finite() { pdf } else { 0.0 }
 }
 
-/// Weights of the corners of the unit square that lie in directions `w`: the cosine to the shading normal, kept off zero so
+/// Weights of the corners of the unit square where the directions to them have these cosines to the shading normal: never zero, so
 /// that every direction stays possible (pbrt book, 4th edition, §6.5.4).
-pub(crate) fn cosine_weights(reference: &ReferencePoint, w: [Vec3; 4]) -> [f32; 4] {
-    w.map(|w| reference.cosine(w).max(0.01))
+#[inline]
+pub(crate) fn corner_weights(reference: &ReferencePoint, cosines: [f32; 4]) -> [f32; 4] {
+    let least = 0.01;
+    // Compared so that NaN counts as little.
+    let weight = |cos: f32| if cos > least { cos } else { least };
+    cosines.map(|cos| weight(if reference.one_sided { cos } else { cos.abs() }))
 }

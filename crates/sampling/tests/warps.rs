@@ -225,46 +225,65 @@ fn spherical_triangles_that_look_small_are_sampled_like_flat_ones() {
 
 #[test]
 fn spherical_rectangles() {
-    let v = |x, y, z| Vec3::new(x, y, z);
-    let (eu, ev) = (v(2.0, 0.0, 0.0), v(0.0, 3.0, 0.0));
-    for (i, (from, corner, eu, ev)) in [
-        (Vec3::ZERO, v(-1.0, -1.5, 1.0), eu, ev),
-        (Vec3::ZERO, v(-1.0, -1.5, -0.05), eu, ev),
-        (Vec3::ZERO, v(0.0, 0.0, 1.0), eu, ev),
-        (v(7.0, 8.0, -0.5), v(1.0, 2.0, 3.0), v(0.6, 0.8, 0.0), v(-0.8, 0.6, 0.0)),
-        (v(5.0, 0.1, 0.2), v(-1.0, -1.0, 0.0), eu, v(0.0, 0.0, 4.0)),
-        (v(-3.0, 0.5, 0.3), v(0.0, 0.0, 0.0), eu, ev),
+    let (v, size) = (|x, y, z| Vec3::new(x, y, z), Vec2::new(2.0, 3.0));
+    for (i, (corner, size)) in [
+        (v(-1.0, -1.5, 1.0), size),
+        (v(-1.0, -1.5, -0.05), size),
+        (v(0.0, 0.0, 1.0), size),
+        (v(-8.4, 1.2, 3.5), Vec2::ONE),
+        (v(-6.0, -0.2, 1.1), Vec2::new(2.0, 4.0)),
+        (v(3.0, -0.5, -0.3), size),
     ]
     .into_iter()
     .enumerate()
     {
-        let r = SphericalRectangle::new(from, corner, eu, ev).unwrap();
+        let r = SphericalRectangle::new(corner, size).unwrap();
+        let (eu, ev) = (v(size.x, 0.0, 0.0), v(0.0, size.y, 0.0));
         let corners = [corner, corner + eu, corner + eu + ev, corner + ev];
         let halves = [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
-        let pdf = |d| if halves.iter().any(|&h| hits(from, h, d)) { r.pdf() } else { 0.0 };
-        directions(&format!("rectangle {i}"), |u| r.sample(u).direction, pdf);
-        round_trip_2d("rectangle", 1e-4, |u| r.sample(u).uv, |uv| r.invert(uv));
+        let pdf = |d| if halves.iter().any(|&h| hits(Vec3::ZERO, h, d)) { r.pdf() } else { 0.0 };
+        let toward = |place: Vec2| (corner + (place * size).extend(0.0)).normalize();
+        directions(&format!("rectangle {i}"), |u| toward(r.sample(u)), pdf);
+        round_trip_2d("rectangle", 1e-4, |u| r.sample(u), |place| r.invert(place));
         let triangles: f32 =
-            halves.iter().map(|&h| SphericalTriangle::new(from, h).unwrap().solid_angle()).sum();
+            halves.iter().map(|&h| SphericalTriangle::new(Vec3::ZERO, h).unwrap().solid_angle()).sum();
         assert!((r.solid_angle() / triangles - 1.0).abs() < 1e-4);
-        for u in points() {
-            let s = r.sample(u);
-            let along = (corner + eu * s.uv.x + ev * s.uv.y - from).normalize();
-            assert!((along - s.direction).length() < 1e-5, "{i} {u}: {s:?}");
+        for (distance, corner) in r.corner_distances().into_iter().zip([0, 1, 3, 2].map(|k| corners[k])) {
+            assert!((distance / corner.length() - 1.0).abs() < 1e-6, "{i}: {corner}");
         }
     }
-    assert_eq!(SphericalRectangle::new(Vec3::ZERO, v(1.0, 1.0, 0.0), eu, ev), None);
-    assert_eq!(SphericalRectangle::new(Vec3::ZERO, v(1.0, 1.0, 1.0), Vec3::ZERO, ev), None);
-    assert_eq!(SphericalRectangle::new(Vec3::ZERO, Vec3::NAN, eu, ev), None);
+    assert_eq!(SphericalRectangle::new(v(1.0, 1.0, 0.0), size), None);
+    assert_eq!(SphericalRectangle::new(v(1.0, 1.0, 1.0), Vec2::new(0.0, 3.0)), None);
+    assert_eq!(SphericalRectangle::new(Vec3::NAN, size), None);
 }
 
 #[test]
 fn spherical_rectangles_that_look_small_are_sampled_like_flat_ones() {
     for distance in [1e2f32, 1e3, 1e4] {
-        let corner = Vec3::new(-1.0, -0.3, distance);
-        let r = SphericalRectangle::new(Vec3::ZERO, corner, 2.0 * Vec3::X, Vec3::Y).unwrap();
+        let r = SphericalRectangle::new(Vec3::new(-1.0, -0.3, distance), Vec2::new(2.0, 1.0)).unwrap();
         assert!((r.solid_angle() * distance * distance / 2.0 - 1.0).abs() < 1e-3, "{distance}");
         let o = Options { samples: 50_000, ..options() };
-        chi2::square_test(|u| Some(r.sample(u).uv), |_| 1.0, &o).check(&format!("from {distance}"));
+        chi2::square_test(|u| Some(r.sample(u)), |_| 1.0, &o).check(&format!("from {distance}"));
+    }
+}
+
+#[test]
+fn spherical_rectangles_at_all_scales_give_places_within() {
+    let mut rng = Rng::new(7);
+    for scale in [1e-9f32, 1e-3, 1.0, 1e4, 1e9] {
+        for _ in 0..2000 {
+            let flat = [1.0, 1e-6][rng.below(2)];
+            let size = scale * (rng.vec2() + 1e-3);
+            let corner = 3.0 * scale * rng.direction() * Vec3::new(1.0, 1.0, flat);
+            let Some(r) = SphericalRectangle::new(corner, size) else { continue };
+            assert!(r.pdf() > 0.0 && r.solid_angle() < 6.284, "{corner} {size}");
+            for u in [Vec2::ZERO, rng.vec2(), Vec2::splat(tenfold_math::ONE_MINUS_EPSILON)] {
+                let place = r.sample(u);
+                let within = |x: f32| (0.0..=1.0).contains(&x);
+                assert!(within(place.x) && within(place.y), "{corner} {size} {u}: {place}");
+                let back = r.invert(place);
+                assert!(within(back.x) && within(back.y), "{corner} {size} {place}: {back}");
+            }
+        }
     }
 }

@@ -1,15 +1,11 @@
-use super::{ShapeHit, quadric::integrate};
+use super::{Rectangle, ShapeHit, quadric::integrate};
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
-    interaction::weingarten,
-    sample::{cosine_weights, pdf_by_solid_angle},
+    interaction::weingarten, sample::pdf_by_solid_angle,
 };
 use std::ops::{Add, Mul};
 use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
-use tenfold_sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
-
-/// Rectangles that fill less solid angle than this are sampled by area, which hardly differs there (pbrt's bound).
-const MIN_SPHERICAL_AREA: f32 = 1e-4;
+use tenfold_sampling::warp::{bilinear_pdf, sample_bilinear};
 
 /// A bilinear patch of a mesh: `p(u, v)` interpolates four corners, given in the order 00, 10, 01, 11.
 #[derive(Copy, Clone, Debug)]
@@ -33,13 +29,22 @@ impl<'a> BilinearPatch<'a> {
         Bounds3::around(self.positions())
     }
 
-    /// Whether the patch is a rectangle, up to rounding.
-    pub fn is_rectangle(&self) -> bool {
-        let [p00, p10, p01, p11] = self.positions();
-        let (eu, ev) = (p10 - p00, p01 - p00);
-        let (lu, lv) = (eu.length(), ev.length());
-        let skew = (p11 - p10 - ev).length();
-        lu > 0.0 && lv > 0.0 && skew <= 1e-5 * lu.min(lv) && eu.dot(ev).abs() <= 1e-5 * lu * lv
+    /// The patch as a rectangle; `None` where it is not one up to rounding, or where interpolated normals turn the geometric one around
+    /// within it.
+    pub fn rectangle(&self) -> Option<Rectangle> {
+        let corners = self.positions();
+        let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let flip = match self.mesh.normals(self.index) {
+            Some(normals) => {
+                let below = normals.map(|ns| n.dot(ns) < 0.0);
+                if below.iter().any(|&b| b != below[0]) {
+                    return None;
+                }
+                below[0]
+            }
+            None => self.mesh.flip,
+        };
+        Rectangle::new(corners, flip, self.mesh.uvs(self.index))
     }
 
     /// The geometric normal at parameters `uv`, where `∂p/∂u × ∂p/∂v` is `n` (of any length).
@@ -200,15 +205,11 @@ impl<'a> BilinearPatch<'a> {
     }
 
     fn point(&self, uv: Vec2, pdf: f32) -> ShapeSample {
-        self.point_with_normal(uv, self.unit_normal(uv), pdf)
-    }
-
-    fn point_with_normal(&self, uv: Vec2, n: Vec3, pdf: f32) -> ShapeSample {
         let p = self.positions();
         ShapeSample {
             p: bilerp(uv, p),
             p_error: gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
-            n: self.orient(n, uv),
+            n: self.orient(self.unit_normal(uv), uv),
             uv: self.texture_uv(uv),
             param: uv,
             pdf,
@@ -240,49 +241,18 @@ impl<'a> BilinearPatch<'a> {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    fn seen_from(&self, reference: &ReferencePoint) -> Option<SphericalRectangle> {
-        if !self.is_rectangle() {
-            return None;
-        }
-        let [p00, p10, p01, _] = self.positions();
-        SphericalRectangle::new(reference.p, p00, p10 - p00, p01 - p00)
-            .filter(|r| r.solid_angle() > MIN_SPHERICAL_AREA)
-    }
-
-    /// The parameters of a point of a rectangle, which may also be known as a point of triangles that cover it.
-    fn place_in_rectangle(&self, p: Vec3) -> Vec2 {
-        let [p00, p10, p01, _] = self.positions();
-        let along = |edge: Vec3| ((p - p00).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-        Vec2::new(along(p10 - p00), along(p01 - p00))
-    }
-
-    fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
-        let to_corner = self.positions().map(|p| (p - reference.p).normalize_or_zero());
-        cosine_weights(reference, to_corner)
-    }
-
     pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
-        let Some(rectangle) = self.seen_from(reference) else {
-            return self.sample_area(u)?.by_solid_angle(reference);
-        };
-        let (mut u, mut pdf) = (u, rectangle.pdf());
-        if reference.ns != Vec3::ZERO {
-            let weights = self.corner_weights(reference);
-            u = sample_bilinear(u, weights);
-            pdf *= bilinear_pdf(u, weights);
+        match self.rectangle() {
+            Some(rectangle) => rectangle.sample_from(reference, u),
+            None => self.sample_area(u)?.by_solid_angle(reference),
         }
-        Some(self.point_with_normal(rectangle.sample(u).uv, rectangle.normal(), pdf))
     }
 
     pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
-        let Some(rectangle) = self.seen_from(reference) else {
-            return pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n);
-        };
-        if reference.ns == Vec3::ZERO {
-            return rectangle.pdf();
+        match self.rectangle() {
+            Some(rectangle) => rectangle.pdf_from_point(reference, point),
+            None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
         }
-        let u = rectangle.invert(self.place_in_rectangle(point.p));
-        rectangle.pdf() * bilinear_pdf(u, self.corner_weights(reference))
     }
 }
 
@@ -300,7 +270,11 @@ fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
 }
 
 /// Bilinear interpolation of values at the corners 00, 10, 01, 11.
-fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(uv: Vec2, [x00, x10, x01, x11]: [T; 4]) -> T {
+#[inline]
+pub(super) fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(
+    uv: Vec2,
+    [x00, x10, x01, x11]: [T; 4],
+) -> T {
     let (u, v) = (uv.x, uv.y);
     let low = x00 * (1.0 - u) + x10 * u;
     let high = x01 * (1.0 - u) + x11 * u;

@@ -4,6 +4,7 @@ mod bilinear_patch;
 mod cylinder;
 mod disk;
 mod quadric;
+mod rectangle;
 mod sphere;
 mod triangle;
 
@@ -11,6 +12,7 @@ pub use bilinear_patch::BilinearPatch;
 pub use cylinder::{Cylinder, CylinderParams};
 pub use disk::{Disk, DiskParams};
 pub use quadric::ShapeError;
+pub use rectangle::Rectangle;
 pub use sphere::{Sphere, SphereParams};
 pub(crate) use triangle::RayShear;
 pub use triangle::Triangle;
@@ -163,6 +165,14 @@ impl Primitive<'_> {
     /// may be hidden by other parts of the primitive.
     pub fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
         dispatch!(self, s => s.sample_from(reference, u))
+    }
+
+    /// The primitive as a rectangle, where it is one: whose views [`Rectangle::sample_from`] samples as [`Primitive::sample_from`], faster.
+    pub fn rectangle(&self) -> Option<Rectangle> {
+        match self {
+            Self::Patch(patch) => patch.rectangle(),
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) | Self::Triangle(_) => None,
+        }
     }
 
     /// Density by solid angle of [`Primitive::sample_from`] for the direction to a known point of the surface. Where

@@ -2,7 +2,7 @@ use super::ShapeHit;
 use crate::{
     NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
     mesh::is_degenerate,
-    sample::{cosine_weights, pdf_by_solid_angle},
+    sample::{corner_weights, pdf_by_solid_angle},
 };
 use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma};
 use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
@@ -204,8 +204,9 @@ impl<'a> Triangle<'a> {
 
     /// Weights of the corners of the unit square that [`SphericalTriangle`] maps to: its lower edge is the second vertex.
     fn corner_weights(&self, reference: &ReferencePoint) -> [f32; 4] {
-        let [a, b, c] = self.positions().map(|p| (p - reference.p).normalize_or_zero());
-        cosine_weights(reference, [b, b, a, c])
+        let cosine = |p: Vec3| reference.ns.dot((p - reference.p).normalize_or_zero());
+        let [a, b, c] = self.positions().map(cosine);
+        corner_weights(reference, [b, b, a, c])
     }
 }
 

@@ -150,7 +150,7 @@ fn patches_are_sampled_by_their_density() {
         }
         let shape = one_patch(p);
         let Primitive::Patch(patch) = shape.primitive(0) else { unreachable!() };
-        assert_eq!(patch.is_rectangle(), k < 3);
+        assert_eq!(patch.rectangle().is_some(), k < 3);
         let position = move |s: Vec2| {
             (p[0] * (1.0 - s.x) + p[1] * s.x) * (1.0 - s.y) + (p[2] * (1.0 - s.x) + p[3] * s.x) * s.y
         };
@@ -174,6 +174,42 @@ fn patches_are_sampled_by_their_density() {
 }
 
 /// The chart of a quadric by its object-space map `at`, whose outward normal is `n`.
+#[test]
+fn rectangles_have_the_normals_of_their_patches() {
+    let positions = vec![Vec3::ZERO, 2.0 * Vec3::X, Vec3::Y, Vec3::new(2.0, 1.0, 0.0)];
+    let indices = vec![0, 1, 2, 3];
+    let up = Some(vec![Vec3::new(0.1, 0.0, 1.0); 4]);
+    let down = Some(vec![Vec3::new(0.1, 0.0, -1.0); 4]);
+    let mixed = Some(vec![Vec3::Z, Vec3::Z, Vec3::Z, Vec3::NEG_Z]);
+    let from = ReferencePoint::free(Vec3::new(0.3, 0.2, 1.0), 0.0);
+    for (normals, reverse, n) in [
+        (None, false, Some(Vec3::Z)),
+        (None, true, Some(Vec3::NEG_Z)),
+        (up, false, Some(Vec3::Z)),
+        (down, false, Some(Vec3::NEG_Z)),
+        (mixed, false, None),
+    ] {
+        let parts = MeshParts {
+            positions: positions.clone(),
+            indices: indices.clone(),
+            normals,
+            uvs: Some([0.5, 1.0].map(|v| [Vec2::new(0.0, v), Vec2::new(0.5, v)]).concat()),
+            ..MeshParts::default()
+        };
+        let mesh = Arc::new(BilinearMesh::new(parts, &Transform::IDENTITY, reverse).unwrap());
+        let shape = Shape::Patches(mesh);
+        let rectangle = shape.primitive(0).rectangle();
+        assert_eq!(rectangle.is_some(), n.is_some());
+        let (Some(rectangle), Some(n)) = (rectangle, n) else { continue };
+        for u in [Vec2::new(0.2, 0.7), Vec2::new(0.9, 0.1)] {
+            let s = rectangle.sample_from(&from, u).unwrap();
+            assert_eq!((s.n, s.param), (n, (s.p / Vec3::new(2.0, 1.0, 1.0)).truncate()));
+            assert!((s.uv - (0.5 * s.param + Vec2::new(0.0, 0.5))).length() < 1e-6, "{s:?}");
+            assert_eq!(Some(s), shape.primitive(0).sample_from(&from, u));
+        }
+    }
+}
+
 fn quadric_chart<'a>(
     t: Transform,
     flip: bool,

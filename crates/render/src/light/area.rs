@@ -2,6 +2,7 @@
 
 use super::LightStrategy::{AsPoint, ByTexture, Complementary, SolidAngle, UniformArea};
 use super::area_image::AreaImage;
+use super::emitter::Emitter;
 use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -21,8 +22,7 @@ pub enum AreaRadiance {
 /// One primitive of a shape, emitting.
 #[derive(Clone, Debug)]
 pub struct DiffuseAreaLight {
-    shape: Arc<Shape>,
-    primitive: u32,
+    emitter: Emitter,
     radiance: AreaRadiance,
     scale: f32,
     two_sided: bool,
@@ -40,18 +40,13 @@ impl DiffuseAreaLight {
         scale: f32,
         two_sided: bool,
     ) -> Self {
-        Self { shape, primitive: primitive as u32, radiance, scale, two_sided, invisible: false }
+        Self { emitter: Emitter::new(shape, primitive), radiance, scale, two_sided, invisible: false }
     }
 
     /// The same light as a surface that no ray meets, for shapes whose alpha is 0 everywhere.
     #[must_use]
     pub fn invisible(self) -> Self {
         Self { invisible: true, ..self }
-    }
-
-    #[inline]
-    pub(super) fn primitive(&self) -> Primitive<'_> {
-        self.shape.primitive(self.primitive as usize)
     }
 
     /// Radiance averaged over the visible wavelengths and, for images, over the image.
@@ -63,8 +58,13 @@ impl DiffuseAreaLight {
             }
     }
 
+    #[cfg(test)]
+    pub(super) fn primitive(&self) -> Primitive<'_> {
+        self.emitter.primitive()
+    }
+
     pub(super) fn bounds(&self) -> LightBounds {
-        let primitive = self.primitive();
+        let primitive = self.emitter.primitive();
         let (bounds, normals, area) = (primitive.bounds(), primitive.normal_cone(), primitive.area());
         // A convex surface that faces all ways shows a quarter of itself to each (Cauchy).
         let shown = if normals.cos_theta <= -1.0 { 0.25 * area } else { area };
@@ -118,17 +118,17 @@ impl DiffuseAreaLight {
         u: Vec2,
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
-        let primitive = self.primitive();
+        let emitter = &self.emitter;
         let s = match (strategy, &self.radiance) {
-            (ByTexture | Complementary, AreaRadiance::Image(image)) => {
-                image.sample_from(&primitive, from, u)?
-            }
-            (ByTexture | Complementary | SolidAngle, _) => primitive.sample_from(from, u)?,
-            (UniformArea, _) => primitive.sample_area_from(from, u)?,
-            (AsPoint, AreaRadiance::Image(image)) => image.point_from(&primitive, from, u)?,
+            (ByTexture | Complementary, AreaRadiance::Image(image)) => image.sample_from(emitter, from, u)?,
+            (ByTexture | Complementary | SolidAngle, _) => emitter.sample_from(from, u)?,
+            (UniformArea, _) => emitter.primitive().sample_area_from(from, u)?,
+            (AsPoint, AreaRadiance::Image(image)) => image.point_from(&emitter.primitive(), from, u)?,
             // A ball shines to all sides by what is seen of it; where the other shapes are seen from must not matter.
-            (AsPoint, _) if matches!(primitive, Primitive::Sphere(_)) => primitive.sample_from(from, u)?,
-            (AsPoint, _) => primitive.sample_area_from(from, u)?,
+            (AsPoint, _) => match emitter.primitive() {
+                sphere @ Primitive::Sphere(_) => sphere.sample_from(from, u)?,
+                primitive => primitive.sample_area_from(from, u)?,
+            },
         };
         let to_light = s.p - from.p;
         let distance_squared = to_light.length_squared();
@@ -149,13 +149,11 @@ impl DiffuseAreaLight {
     /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`; where it finds but one, any positive number.
     #[inline]
     pub(super) fn pdf(&self, strategy: LightStrategy, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
-        let primitive = self.primitive();
+        let emitter = &self.emitter;
         match (strategy, &self.radiance) {
-            (ByTexture | Complementary, AreaRadiance::Image(image)) => {
-                image.pdf_from(&primitive, from, point)
-            }
-            (ByTexture | Complementary | SolidAngle, _) => primitive.pdf_from_point(from, point),
-            (UniformArea | AsPoint, _) => primitive.pdf_area_from_point(from, point),
+            (ByTexture | Complementary, AreaRadiance::Image(image)) => image.pdf_from(emitter, from, point),
+            (ByTexture | Complementary | SolidAngle, _) => emitter.pdf_from_point(from, point),
+            (UniformArea | AsPoint, _) => emitter.primitive().pdf_area_from_point(from, point),
         }
     }
 }

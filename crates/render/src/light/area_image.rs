@@ -1,6 +1,7 @@
 //! Images on area lights, and their sampling.
 
 use super::RadianceImage;
+use super::emitter::Emitter;
 use std::sync::Arc;
 use tenfold_geometry::{Primitive, ReferencePoint, Shape, ShapeSample, SurfacePoint};
 use tenfold_image::{Image, WrapMode};
@@ -113,20 +114,20 @@ impl AreaImage {
     #[inline]
     pub(super) fn sample_from(
         &self,
-        primitive: &Primitive<'_>,
+        emitter: &Emitter,
         from: &ReferencePoint,
         u: Vec2,
     ) -> Option<ShapeSample> {
-        let Some(b) = &self.brightness else { return primitive.sample_from(from, u) };
+        let Some(b) = &self.brightness else { return emitter.sample_from(from, u) };
         let by_image = b.probability(from);
         let mut sample = if u.x < by_image {
             let u = Vec2::new((u.x / by_image).min(ONE_MINUS_EPSILON), u.y);
-            primitive.sample_area(b.distribution.sample(u).point)?
+            emitter.primitive().sample_area(b.distribution.sample(u).point)?
         } else {
             let u = Vec2::new(((u.x - by_image) / (1.0 - by_image)).min(ONE_MINUS_EPSILON), u.y);
-            primitive.sample_from(from, u)?
+            emitter.sample_from(from, u)?
         };
-        sample.pdf = b.pdf_from(by_image, primitive, from, &sample.surface_point());
+        sample.pdf = b.pdf_from(by_image, emitter, from, &sample.surface_point());
         Some(sample)
     }
 
@@ -139,20 +140,15 @@ impl AreaImage {
     ) -> Option<ShapeSample> {
         let Some(b) = &self.brightness else { return primitive.sample_area_from(from, u) };
         let mut sample = primitive.sample_area(b.distribution.sample(u).point)?;
-        sample.pdf = b.pdf_from(1.0, primitive, from, &sample.surface_point());
+        sample.pdf = b.pdf_by_image(from, &sample.surface_point());
         Some(sample)
     }
 
     #[inline]
-    pub(super) fn pdf_from(
-        &self,
-        primitive: &Primitive<'_>,
-        from: &ReferencePoint,
-        point: &SurfacePoint,
-    ) -> f32 {
+    pub(super) fn pdf_from(&self, emitter: &Emitter, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         match &self.brightness {
-            Some(b) => b.pdf_from(b.probability(from), primitive, from, point),
-            None => primitive.pdf_from_point(from, point),
+            Some(b) => b.pdf_from(b.probability(from), emitter, from, point),
+            None => emitter.pdf_from_point(from, point),
         }
     }
 }
@@ -171,22 +167,19 @@ impl Brightness {
         1.0 - (self.radius_squared / distance_squared.max(1e-30)).clamp(0.1, 0.5)
     }
 
+    /// Density by solid angle of a point that is chosen by brightness alone.
     #[inline]
-    fn pdf_from(
-        &self,
-        by_image: f32,
-        primitive: &Primitive<'_>,
-        from: &ReferencePoint,
-        point: &SurfacePoint,
-    ) -> f32 {
+    fn pdf_by_image(&self, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         let to_light = point.p - from.p;
         let d2 = to_light.length_squared();
-        let image =
+        let pdf =
             self.distribution.pdf(point.param) / self.area * d2 * d2.sqrt() / point.n.dot(to_light).abs();
-        if !image.is_finite() {
-            return 0.0;
-        }
-        by_image * image + (1.0 - by_image) * primitive.pdf_from_point(from, point)
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    #[inline]
+    fn pdf_from(&self, by_image: f32, emitter: &Emitter, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
+        by_image * self.pdf_by_image(from, point) + (1.0 - by_image) * emitter.pdf_from_point(from, point)
     }
 }
 

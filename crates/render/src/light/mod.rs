@@ -9,6 +9,7 @@ mod area_image;
 mod choice;
 mod distant;
 mod emission;
+mod emitter;
 mod goniometric;
 mod image_infinite;
 mod lights;

@@ -26,7 +26,7 @@ pub use line::{
     linear_pdf, sample_bilinear, sample_exponential, sample_linear, sample_tent, tent_pdf,
 };
 pub use normal::{TruncatedNormal, erf, invert_normal, normal_pdf, sample_normal, sample_two_normals};
-pub use spherical_rectangle::{RectanglePoint, SphericalRectangle};
+pub use spherical_rectangle::SphericalRectangle;
 pub use spherical_triangle::{SphericalTriangle, TrianglePoint};
 use tenfold_math::ops;
 pub use triangle::{invert_uniform_triangle, sample_uniform_triangle};

@@ -1,73 +1,40 @@
 use tenfold_math::ops;
-use tenfold_math::{DVec3, ONE_MINUS_EPSILON, Vec2, Vec3};
+use tenfold_math::{ONE_MINUS_EPSILON, Vec2, Vec3};
 
-/// A rectangle as it is seen from a point, to be sampled uniformly in solid angle (Ureña, Fajardo and King 2013).
+/// A rectangle as it is seen from the origin, to be sampled uniformly in solid angle (Ureña, Fajardo and King 2013). It lies along x and
+/// y in a plane of constant z.
 ///
 /// The paper's angles between planes appear here as complex numbers: the corner at (x, y) in the plane at z has the number
 /// |z| r + i x y, with r its distance, whose angle is its share of the solid angle. Products of them take the place of sums of arc
 /// cosines.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SphericalRectangle {
-    /// Unit axes: along the edges, and across with the rectangle on its negative side.
-    x: DVec3,
-    y: DVec3,
-    z: DVec3,
-    /// The rectangle in these axes, seen from the point.
-    x0: f64,
-    x1: f64,
-    y0: f64,
-    y1: f64,
-    z0: f64,
-    /// Cosines between the normal and the planes through the point and the edges at y0 and y1.
-    b0: f64,
-    b1: f64,
-    /// Cosine and sine of the constant of the azimuthal angle (paper, eq. 8).
-    k: [f64; 2],
+    x: [f64; 2],
+    y: [f64; 2],
+    /// Distance of the plane.
+    z: f64,
+    /// Distances of the corners 00, 10, 01, 11.
+    corners: [f64; 4],
+    /// The complex number of the edge at the lower x.
+    edge: [f64; 2],
     solid_angle: f64,
 }
 
-/// A sample of a [`SphericalRectangle`].
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct RectanglePoint {
-    /// Unit vector from the point to the rectangle.
-    pub direction: Vec3,
-    /// Place in the rectangle, from 0 to 1 along both edges.
-    pub uv: Vec2,
-    /// Density per steradian.
-    pub pdf: f32,
-}
-
 impl SphericalRectangle {
-    /// The rectangle with a `corner` and two perpendicular edges seen from `from`; `None` where it covers no solid angle.
-    pub fn new(from: Vec3, corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Option<Self> {
-        let (u, v) = (edge_u.as_dvec3(), edge_v.as_dvec3());
-        let (x, y) = (u.try_normalize()?, v.try_normalize()?);
-        let mut z = x.cross(y);
-        let d = corner.as_dvec3() - from.as_dvec3();
-        let mut z0 = d.dot(z);
-        if z0 > 0.0 {
-            z0 = -z0;
-            z = -z;
-        }
-        let (x0, y0) = (d.dot(x), d.dot(y));
-        let (x1, y1) = (x0 + u.length(), y0 + v.length());
-        let near = [corner_number(x0, y0, z0), corner_number(x0, y1, z0)];
-        let solid_angle = area(near, [corner_number(x1, y0, z0), corner_number(x1, y1, z0)]);
-        if !(solid_angle > 0.0 && solid_angle.is_finite()) {
-            return None;
-        }
-        // The angles between the planes through the edge at x0 and those at its ends have i times these numbers.
-        let [re, im] = times_conjugate(near[1], near[0]);
-        let scale = -1.0 / (re * re + im * im).sqrt();
-        let k = [re * scale, im * scale];
-        let (b0, b1) = (-y0 / (z0 * z0 + y0 * y0).sqrt(), y1 / (z0 * z0 + y1 * y1).sqrt());
-        Some(Self { x, y, z, x0, x1, y0, y1, z0, b0, b1, k, solid_angle })
-    }
-
-    /// The unit cross product of the edges along u and v.
+    /// The rectangle of the given `size` along x and y whose lower corner in both is `corner`; `None` where it covers no solid angle.
     #[inline]
-    pub fn normal(&self) -> Vec3 {
-        self.x.cross(self.y).as_vec3()
+    pub fn new(corner: Vec3, size: Vec2) -> Option<Self> {
+        let from = |low: f32, size: f32| [low.into(), f64::from(low) + f64::from(size)];
+        let (x, y, z) = (from(corner.x, size.x), from(corner.y, size.y), f64::from(corner.z).abs());
+        let distance = |x: f64, y: f64| (x * x + y * y + z * z).sqrt();
+        let corners =
+            [distance(x[0], y[0]), distance(x[1], y[0]), distance(x[0], y[1]), distance(x[1], y[1])];
+        let number = |x: f64, y: f64, r: f64| [z * r, x * y];
+        let edge = |x: f64, r: [f64; 2]| times_conjugate(number(x, y[1], r[1]), number(x, y[0], r[0]));
+        let (near, far) = (edge(x[0], [corners[0], corners[2]]), edge(x[1], [corners[1], corners[3]]));
+        let solid_angle = area(near, far);
+        let new = Self { x, y, z, corners, edge: near, solid_angle };
+        (solid_angle > 0.0 && solid_angle < std::f64::consts::TAU).then_some(new)
     }
 
     /// In steradians.
@@ -82,51 +49,60 @@ impl SphericalRectangle {
         (1.0 / self.solid_angle) as f32
     }
 
-    /// A uniform direction to the rectangle.
+    /// Distances of the corners, in the order 00, 10, 01, 11.
     #[inline]
-    pub fn sample(&self, u: Vec2) -> RectanglePoint {
-        // The edge-parallel line at x for which the part below it has the share u.x of the solid angle (eq. 9 to 13).
-        let (s, c) = ops::sin_cos(f64::from(u.x) * self.solid_angle);
-        let [cos_k, sin_k] = self.k;
-        let (s, c) = (s * cos_k + c * sin_k, c * cos_k - s * sin_k);
-        let f = c * self.b0 - self.b1;
-        let across = f * f - s * s * (1.0 - self.b0 * self.b0);
-        let x = -self.z0 * s * 1f64.copysign(f) / across.max(0.0).sqrt();
-        let x = if x.is_nan() { self.x0 } else { x.clamp(self.x0, self.x1) };
-
-        // Along that line the sine of the elevation is uniform (eq. 16 to 18).
-        let d2 = x * x + self.z0 * self.z0;
-        let sine = |y: f64| y / (d2 + y * y).sqrt();
-        let (d, h0, h1) = (d2.sqrt(), sine(self.y0), sine(self.y1));
-        let h = h0 + f64::from(u.y) * (h1 - h0);
-        let y = (h * d / (1.0 - h * h).max(0.0).sqrt()).clamp(self.y0, self.y1);
-
-        let direction = (self.x * x + self.y * y + self.z * self.z0).normalize();
-        let uv = Vec2::new(
-            ((x - self.x0) / (self.x1 - self.x0)) as f32,
-            ((y - self.y0) / (self.y1 - self.y0)) as f32,
-        );
-        RectanglePoint { direction: direction.as_vec3(), uv, pdf: self.pdf() }
+    pub fn corner_distances(&self) -> [f32; 4] {
+        self.corners.map(|r| r as f32)
     }
 
-    /// The numbers that [`Self::sample`] maps to the place `uv` in the rectangle.
-    pub fn invert(&self, uv: Vec2) -> Vec2 {
-        let x = self.x0 + f64::from(uv.x) * (self.x1 - self.x0);
-        let y = self.y0 + f64::from(uv.y) * (self.y1 - self.y0);
-        let d2 = x * x + self.z0 * self.z0;
-        let sine = |y: f64| y / (d2 + y * y).sqrt();
-        let (h0, h1) = (sine(self.y0), sine(self.y1));
-        let edge = |x: f64| [corner_number(x, self.y0, self.z0), corner_number(x, self.y1, self.z0)];
-        let u = area(edge(self.x0), edge(x)) / self.solid_angle;
-        Vec2::new(u as f32, ((sine(y) - h0) / (h1 - h0)) as f32)
+    /// Where a uniform direction meets the rectangle, from 0 to 1 along both edges; its density is [`Self::pdf`].
+    #[inline]
+    pub fn sample(&self, u: Vec2) -> Vec2 {
+        let Self { x: [x0, x1], y: [y0, y1], z, edge: [re, im], .. } = *self;
+        let z2 = z * z;
+        // Distances of the edges along x from the x axis; over them the paper's b0 and b1 are −y0 and y1.
+        let (a0, a1) = ((z2 + y0 * y0).sqrt(), (z2 + y1 * y1).sqrt());
+        let a = a0 * a1;
+        // Sine and cosine of the azimuthal angle (eq. 8): that of −edge, whose length is a (x0² + z²), comes on top.
+        let (s, c) = ops::sin_cos(f64::from(u.x) * self.solid_angle);
+        let scale = -1.0 / ((x0 * x0 + z2) * a);
+        let (s, c) = ((s * re + c * im) * scale, (c * re - s * im) * scale);
+        // The line at x for which the part of the rectangle below it has the share u.x of the solid angle (eq. 9 to 13, times a).
+        let f = -(c * y0 * a1 + y1 * a0);
+        let s_z = s * z;
+        let across = f * f - (s_z * a1) * (s_z * a1);
+        let x = (s_z * a).abs().copysign(s_z * f) / across.max(0.0).sqrt();
+        let x = clamp(x, x0, x1);
+
+        // Along that line the sine of the elevation is uniform (eq. 16 to 18).
+        let d2 = x * x + z2;
+        let [h0, h1] = [y0, y1].map(|y| y / (d2 + y * y).sqrt());
+        let h = h0 + f64::from(u.y) * (h1 - h0);
+        let y = clamp(h * (d2 / (1.0 - h * h).max(0.0)).sqrt(), y0, y1);
+        let share = |x: f64, [x0, x1]: [f64; 2]| ((x - x0) / (x1 - x0)) as f32;
+        Vec2::new(share(x, self.x), share(y, self.y))
+    }
+
+    /// The numbers that [`Self::sample`] maps to `place` in the rectangle, from 0 to 1 along both edges.
+    #[inline]
+    pub fn invert(&self, place: Vec2) -> Vec2 {
+        let Self { x: [x0, x1], y: [y0, y1], z, .. } = *self;
+        let x = x0 + f64::from(place.x) * (x1 - x0);
+        let y = y0 + f64::from(place.y) * (y1 - y0);
+        let d2 = x * x + z * z;
+        let [r0, r, r1] = [y0, y, y1].map(|y| (d2 + y * y).sqrt());
+        let [h0, h, h1] = [y0 / r0, y / r, y1 / r1];
+        let line = times_conjugate([z * r1, x * y1], [z * r0, x * y0]);
+        Vec2::new((area(self.edge, line) / self.solid_angle) as f32, ((h - h0) / (h1 - h0)) as f32)
             .clamp(Vec2::ZERO, Vec2::splat(ONE_MINUS_EPSILON))
     }
 }
 
-/// The number of a corner: see [`SphericalRectangle`].
+/// The nearest number from `low` to `high`; `low` for NaN.
 #[inline]
-fn corner_number(x: f64, y: f64, z: f64) -> [f64; 2] {
-    [z.abs() * (x * x + y * y + z * z).sqrt(), x * y]
+fn clamp(x: f64, low: f64, high: f64) -> f64 {
+    let x = if x > low { x } else { low };
+    if x < high { x } else { high }
 }
 
 /// The product of a complex number and the conjugate of another.
@@ -135,10 +111,10 @@ fn times_conjugate([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
     [a * c + b * d, b * c - a * d]
 }
 
-/// Solid angle of the rectangle whose edges at x0 and x1 have these corners, at y0 and y1: the angle of a product.
+/// Solid angle of a rectangle whose edges at the lower and upper x have these numbers: the angle of a product.
 #[inline]
-fn area(near: [[f64; 2]; 2], far: [[f64; 2]; 2]) -> f64 {
-    let [re, im] = times_conjugate(times_conjugate(far[1], far[0]), times_conjugate(near[1], near[0]));
+fn area(near: [f64; 2], far: [f64; 2]) -> f64 {
+    let [re, im] = times_conjugate(far, near);
     let angle = ops::atan2(im, re);
     // Sums above π come out negative, and so do zeros by rounding.
     if angle < -1e-6 { angle + std::f64::consts::TAU } else { angle }

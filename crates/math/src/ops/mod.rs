@@ -2,7 +2,10 @@
 //!
 //! The standard library's come from the platform's C library, whose last digits differ between systems and even between
 //! processors (glibc has variants with fused multiply-add). These are the `libm` crate's, plain Rust that is rounded the same
-//! everywhere. Square roots are exact as they are, and need no substitute.
+//! everywhere; those that every sample needs are our own, in fewer instructions. Square roots are exact as they are, and need no
+//! substitute.
+
+mod trigonometry;
 
 /// A float with elementary functions: `f32` and `f64`.
 pub trait Float: Copy {
@@ -15,6 +18,8 @@ pub trait Float: Copy {
         f32_: impl FnOnce(f32, f32) -> f32,
         f64_: impl FnOnce(f64, f64) -> f64,
     ) -> Self;
+    #[doc(hidden)]
+    fn sin_cos(self) -> (Self, Self);
 }
 
 impl Float for f32 {
@@ -31,6 +36,10 @@ impl Float for f32 {
     ) -> Self {
         f32_(self, other)
     }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        trigonometry::sin_cos_f32(self)
+    }
 }
 
 impl Float for f64 {
@@ -46,6 +55,10 @@ impl Float for f64 {
         f64_: impl FnOnce(f64, f64) -> f64,
     ) -> Self {
         f64_(self, other)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        trigonometry::sin_cos(self)
     }
 }
 
@@ -83,13 +96,13 @@ functions! {
 /// Sine and cosine of an angle in radians.
 #[inline]
 pub fn sin_cos<F: Float>(x: F) -> (F, F) {
-    (sin(x), cos(x))
+    x.sin_cos()
 }
 
 /// The angle in `(-π, π]` of the point `(x, y)`.
 #[inline]
 pub fn atan2<F: Float>(y: F, x: F) -> F {
-    y.apply2(x, libm::atan2f, libm::atan2)
+    y.apply2(x, trigonometry::atan2_f32, trigonometry::atan2)
 }
 
 /// `x` to the power of `y`.
