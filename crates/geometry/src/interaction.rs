@@ -1,4 +1,4 @@
-use crate::{Hit, InstanceId, PrimitiveId, ReferencePoint, ShapeSample, SurfacePoint};
+use crate::{InstanceId, PrimitiveId, ReferencePoint, ShapeSample, SurfacePoint};
 use tenfold_math::{Id, Ray, Transform, Vec2, Vec3, offset_ray_origin};
 
 /// How far along a ray of [`ray_between`] an occluder counts: short of the far end by more than its rounding.
@@ -52,19 +52,17 @@ pub struct SurfaceInteraction {
 }
 
 impl SurfaceInteraction {
-    /// A surface without a shading frame of its own, with the normal along `∂p/∂u × ∂p/∂v`, flipped where asked.
-    /// [`World::interaction`](crate::World::interaction) fills in what was hit.
+    /// A surface without a shading frame of its own. [`World::interaction`](crate::World::interaction) fills in what was hit.
+    #[inline]
     pub(crate) fn new(
         p: Vec3,
         p_error: Vec3,
+        n: Vec3,
         uv: Vec2,
         param: Vec2,
         [dpdu, dpdv, dndu, dndv]: [Vec3; 4],
-        flip: bool,
         ray: &Ray,
     ) -> Self {
-        let n = dpdu.cross(dpdv).normalize_or(Vec3::Z);
-        let n = if flip { -n } else { n };
         Self {
             p,
             p_error,
@@ -74,19 +72,12 @@ impl SurfaceInteraction {
             dpdu,
             dpdv,
             shading: Shading { n, dpdu, dpdv, dndu, dndv },
-            wo: -ray.direction.normalize_or(Vec3::NEG_Z),
+            wo: toward_origin(ray),
             time: ray.time,
             primitive: PrimitiveId { geometry: Id::new(0), index: 0 },
             instance: InstanceId::NONE,
             face_index: 0,
         }
-    }
-
-    /// Sets what was hit.
-    pub(crate) fn of(mut self, hit: &Hit) -> Self {
-        self.primitive = hit.primitive;
-        self.instance = hit.instance;
-        self
     }
 
     /// The same surface mapped by `t`; normals by the inverse transpose, the error bound widened.
@@ -160,19 +151,11 @@ pub fn ray_between(p0: Vec3, p0_error: Vec3, n0: Vec3, p1: Vec3, p1_error: Vec3,
     Ray::new(from, to - from, time)
 }
 
-/// The derivatives of the unit normal from those of the position: the Weingarten equations, pbrt book, 4th edition,
-/// eq. 6.6 (first fundamental form E, F, G; second e, f, g).
-pub(crate) fn weingarten(dpdu: Vec3, dpdv: Vec3, d2uu: Vec3, d2uv: Vec3, d2vv: Vec3) -> [Vec3; 2] {
-    let (e1, f1, g1) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
-    let n = dpdu.cross(dpdv).normalize_or_zero();
-    let (e, f, g) = (n.dot(d2uu), n.dot(d2uv), n.dot(d2vv));
-    let det = e1 * g1 - f1 * f1;
-    if det == 0.0 {
-        return [Vec3::ZERO; 2];
-    }
-    let s = 1.0 / det;
-    [
-        ((f * f1 - e * g1) * s) * dpdu + ((e * f1 - f * e1) * s) * dpdv,
-        ((g * f1 - f * g1) * s) * dpdu + ((f * f1 - g * e1) * s) * dpdv,
-    ]
+/// Unit direction to where a ray came from.
+#[inline]
+pub(crate) fn toward_origin(ray: &Ray) -> Vec3 {
+    let d = ray.direction;
+    // Most are of unit length already, up to rounding.
+    let is_unit = (d.length_squared() - 1.0).abs() <= 4.0 * f32::EPSILON;
+    if is_unit { -d } else { -d.normalize_or(Vec3::NEG_Z) }
 }

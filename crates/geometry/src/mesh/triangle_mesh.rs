@@ -20,6 +20,12 @@ impl TriangleMesh {
         self.parts.tangents.as_ref().map(|s| self.at_corners(triangle, s))
     }
 
+    /// Whether the triangles have shading frames of their own: vertex normals or tangents.
+    #[inline]
+    pub(crate) fn has_frames(&self) -> bool {
+        self.parts.normals.is_some() || self.parts.tangents.is_some()
+    }
+
     /// The rectangles that the triangles make up, two after two, with the same geometric normals: to sample them as such. `None`
     /// where any pair does not, or where the mesh has normals of its own.
     pub fn rectangles(&self) -> Option<BilinearMesh> {

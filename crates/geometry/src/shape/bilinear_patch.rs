@@ -1,7 +1,7 @@
-use super::{Rectangle, ShapeHit, quadric::integrate};
+use super::{Rectangle, ShapeHit, quadric::integrate, unit_cross};
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
-    interaction::weingarten, sample::pdf_by_solid_angle,
+    sample::pdf_by_solid_angle,
 };
 use std::ops::{Add, Mul};
 use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
@@ -142,9 +142,10 @@ impl<'a> BilinearPatch<'a> {
         let p = self.positions();
         let uv = Vec2::new(hit.u, hit.v);
         let [mut dpdu, mut dpdv] = derivatives(uv, p);
-        let n = self.unit_normal(uv);
+        let n = unit_cross(dpdu, dpdv).unwrap_or_else(|| self.unit_normal(uv));
         let twist = (p[0] - p[2]) + (p[3] - p[1]);
-        let [mut dndu, mut dndv] = weingarten(dpdu, dpdv, Vec3::ZERO, twist, Vec3::ZERO);
+        let [mut dndu, mut dndv] =
+            if twist == Vec3::ZERO { [Vec3::ZERO; 2] } else { normal_derivatives(dpdu, dpdv, n.dot(twist)) };
         let by_texture = self.texture_jacobian(uv);
         if let Some(j) = by_texture {
             let by_st = |du: Vec3, dv: Vec3| [du * j[0].x + dv * j[0].y, du * j[1].x + dv * j[1].y];
@@ -161,14 +162,12 @@ impl<'a> BilinearPatch<'a> {
         let mut surface = SurfaceInteraction::new(
             bilerp(uv, p),
             gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
+            if self.mesh.flip { -n } else { n },
             self.texture_uv(uv),
             uv,
             [dpdu, dpdv, dndu, dndv],
-            false,
             ray,
         );
-        surface.n = if self.mesh.flip { -n } else { n };
-        surface.shading.n = surface.n;
         surface.face_index = self.mesh.face_index(self.index);
         let Some(normals) = self.mesh.normals(self.index) else { return surface };
         if let Some(ns) = bilerp(uv, normals).try_normalize() {
@@ -199,9 +198,9 @@ impl<'a> BilinearPatch<'a> {
     fn unit_normal(&self, uv: Vec2) -> Vec3 {
         let normal = |uv: Vec2| {
             let [dpdu, dpdv] = derivatives(uv, self.positions());
-            dpdu.as_dvec3().cross(dpdv.as_dvec3()).try_normalize()
+            unit_cross(dpdu, dpdv)
         };
-        normal(uv).or_else(|| normal(Vec2::splat(0.5))).map_or(Vec3::Z, |n| n.as_vec3())
+        normal(uv).or_else(|| normal(Vec2::splat(0.5))).unwrap_or(Vec3::Z)
     }
 
     fn point(&self, uv: Vec2, pdf: f32) -> ShapeSample {
@@ -254,6 +253,18 @@ impl<'a> BilinearPatch<'a> {
             None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
         }
     }
+}
+
+/// The derivatives of the unit normal by u and v from those of the position, where `twist` is the part along the normal of the mixed
+/// second one, and the others vanish: the Weingarten equations, pbrt book, 4th edition, eq. 6.6.
+fn normal_derivatives(dpdu: Vec3, dpdv: Vec3, twist: f32) -> [Vec3; 2] {
+    let (uu, uv, vv) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
+    let determinant = uu * vv - uv * uv;
+    if determinant == 0.0 {
+        return [Vec3::ZERO; 2];
+    }
+    let s = twist / determinant;
+    [(uv * s) * dpdu - (uu * s) * dpdv, (uv * s) * dpdv - (vv * s) * dpdu]
 }
 
 /// How far outside [0, 1] a parameter still counts as inside: the rounding of double precision.

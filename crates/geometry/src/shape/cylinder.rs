@@ -3,8 +3,7 @@ use super::{
     quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
-    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, interaction::weingarten,
-    sample::pdf_by_solid_angle,
+    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, sample::pdf_by_solid_angle,
 };
 use glam::DVec3;
 use std::f32::consts::TAU;
@@ -134,22 +133,21 @@ impl Cylinder {
     }
 
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let CylinderParams { z_min, z_max, phi_max, .. } = self.params;
+        let CylinderParams { radius, z_min, z_max, phi_max } = self.params;
         let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
         let dpdu = Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0);
         let dpdv = Vec3::new(0.0, 0.0, z_max - z_min);
-        let d2uu = -phi_max * phi_max * Vec3::new(p.x, p.y, 0.0);
-        let [dndu, dndv] = weingarten(dpdu, dpdv, d2uu, Vec3::ZERO, Vec3::ZERO);
-        let surface = SurfaceInteraction::new(
+        // ∂p/∂u × ∂p/∂v points outward for a positive range of z.
+        let outward = Vec3::new(p.x, p.y, 0.0) / radius;
+        self.placement.place(&SurfaceInteraction::new(
             p,
             gamma(3) * Vec3::new(p.x.abs(), p.y.abs(), 0.0),
+            if self.placement.flip { -outward } else { outward },
             self.object_uv(p, phi),
             Vec2::ZERO,
-            [dpdu, dpdv, dndu, dndv],
-            self.placement.flip,
+            [dpdu, dpdv, dpdu / radius, Vec3::ZERO],
             ray,
-        );
-        self.placement.place(&surface)
+        ))
     }
 
     pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {

@@ -130,18 +130,9 @@ impl Disk {
         // At the centre ∂p/∂u vanishes: keep its direction, so that the frame stays one.
         let around = phi_max * r.max(1e-7 * radius) * Vec3::new(-radial.y, radial.x, 0.0);
         let derivatives = [around, radial * (inner_radius - radius), Vec3::ZERO, Vec3::ZERO];
-        let mut surface = SurfaceInteraction::new(
-            p,
-            Vec3::ZERO,
-            self.object_uv(p),
-            Vec2::ZERO,
-            derivatives,
-            self.placement.flip,
-            ray,
-        );
-        surface.n = if self.placement.flip { Vec3::NEG_Z } else { Vec3::Z };
-        surface.shading.n = surface.n;
-        self.placement.place(&surface)
+        let n = if self.placement.flip { Vec3::NEG_Z } else { Vec3::Z };
+        let uv = self.object_uv(p);
+        self.placement.place(&SurfaceInteraction::new(p, Vec3::ZERO, n, uv, Vec2::ZERO, derivatives, ray))
     }
 
     pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {

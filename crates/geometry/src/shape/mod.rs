@@ -131,6 +131,7 @@ impl Primitive<'_> {
     }
 
     /// The surface at a hit of `ray`, in the space of the shape's world.
+    #[inline]
     pub fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
         dispatch!(self, s => s.interaction(ray, hit))
     }
@@ -190,4 +191,12 @@ impl Primitive<'_> {
             None => 0.0,
         }
     }
+}
+
+/// The unit vector across two others, `None` where that vanishes; in double precision, where products of tiny edges do not.
+#[inline]
+fn unit_cross(a: Vec3, b: Vec3) -> Option<Vec3> {
+    let across = a.as_dvec3().cross(b.as_dvec3());
+    let squared = across.length_squared();
+    (squared > 0.0).then(|| (across * (1.0 / squared.sqrt())).as_vec3())
 }

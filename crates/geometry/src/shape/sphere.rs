@@ -3,8 +3,7 @@ use super::{
     quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
-    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, interaction::weingarten,
-    sample::pdf_by_solid_angle,
+    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, sample::pdf_by_solid_angle,
 };
 use std::f32::consts::{PI, TAU};
 use tenfold_math::ops;
@@ -197,24 +196,18 @@ impl Sphere {
         let (cos_phi, sin_phi) = (p.x / z_radius, p.y / z_radius);
         let dpdu = Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0);
         let dpdv = theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius);
-        let d2uu = -phi_max * phi_max * Vec3::new(p.x, p.y, 0.0);
-        let d2uv = theta_range * p.z * phi_max * Vec3::new(-sin_phi, cos_phi, 0.0);
-        let d2vv = -theta_range * theta_range * p;
-        let [dndu, dndv] = weingarten(dpdu, dpdv, d2uu, d2uv, d2vv);
-        let mut surface = SurfaceInteraction::new(
+        // ∂p/∂u × ∂p/∂v points outward, and the unit normal moves as the point does.
+        let n = p / self.radius;
+        let [dndu, dndv] = [dpdu, dpdv].map(|d| d / self.radius);
+        self.placement.place(&SurfaceInteraction::new(
             p,
             gamma(5) * p.abs(),
+            if self.placement.flip { -n } else { n },
             uv,
             Vec2::ZERO,
             [dpdu, dpdv, dndu, dndv],
-            self.placement.flip,
             ray,
-        );
-        // ∂p/∂u × ∂p/∂v points outward: its exact direction is known without cancellation.
-        let n = p / self.radius;
-        surface.n = if self.placement.flip { -n } else { n };
-        surface.shading.n = surface.n;
-        self.placement.place(&surface)
+        ))
     }
 
     pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {

@@ -1,4 +1,4 @@
-use super::ShapeHit;
+use super::{ShapeHit, unit_cross};
 use crate::{
     NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
     mesh::is_degenerate,
@@ -34,10 +34,10 @@ impl<'a> Triangle<'a> {
     }
 
     /// Unit normal by the order of the vertices; zero without area.
+    #[inline]
     fn vertex_order_normal(&self) -> Vec3 {
         let [a, b, c] = self.positions();
-        // Double precision: the cross product of tiny edges must not underflow.
-        (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3()
+        unit_cross(b - a, c - a).unwrap_or_default()
     }
 
     /// The geometric normal at barycentric weights `b`.
@@ -82,47 +82,45 @@ impl<'a> Triangle<'a> {
         mix(weights(hit.u, hit.v), self.mesh.uvs(self.index))
     }
 
+    #[inline]
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let [p0, p1, p2] = self.positions();
+        let p = self.positions();
         let b = weights(hit.u, hit.v);
-        let uv = self.mesh.uvs(self.index);
-        let (duv02, duv12) = (uv[0] - uv[2], uv[1] - uv[2]);
-        let (dp02, dp12) = (p0 - p2, p1 - p2);
-        let determinant = duv02.perp_dot(duv12);
-        let degenerate_uv = determinant.abs() < 1e-9;
-        let by_uv = |d02: Vec3, d12: Vec3| {
-            let s = 1.0 / determinant;
-            [(d02 * duv12.y - d12 * duv02.y) * s, (d12 * duv02.x - d02 * duv12.x) * s]
-        };
-        let n = self.vertex_order_normal();
-        let [mut dpdu, mut dpdv] = if degenerate_uv { [Vec3::ZERO; 2] } else { by_uv(dp02, dp12) };
-        if dpdu.cross(dpdv).length_squared() == 0.0 {
+        let order_n = self.vertex_order_normal();
+        let chart = Chart::new(self.mesh.uvs(self.index));
+        let [dpdu, dpdv] = if self.mesh.parts().uvs.is_none() {
+            // What the chart would give, up to rounding.
+            [p[1] - p[0], p[2] - p[1]]
+        } else if chart.is_degenerate() {
             // Any tangents; turned as pbrt's, whose normal here is against the order of the vertices.
-            let frame = Frame::from_z(-n);
-            (dpdu, dpdv) = (frame.x, frame.y);
-        }
-        let p_error = gamma(7) * mix(b.map(f32::abs), [p0.abs(), p1.abs(), p2.abs()]);
+            let frame = Frame::from_z(-order_n);
+            [frame.x, frame.y]
+        } else {
+            chart.derivatives(p)
+        };
         let mut surface = SurfaceInteraction::new(
-            mix(b, [p0, p1, p2]),
-            p_error,
-            mix(b, uv),
+            mix(b, p),
+            gamma(7) * mix(b.map(f32::abs), p.map(Vec3::abs)),
+            if self.mesh.flip { -order_n } else { order_n },
+            mix(b, chart.uvs),
             Vec2::new(hit.u, hit.v),
             [dpdu, dpdv, Vec3::ZERO, Vec3::ZERO],
-            false,
             ray,
         );
-        surface.n = if self.mesh.flip { -n } else { n };
-        surface.shading.n = surface.n;
         surface.face_index = self.mesh.face_index(self.index);
-
-        let (normals, tangents) = (self.mesh.normals(self.index), self.mesh.tangents(self.index));
-        if normals.is_none() && tangents.is_none() {
-            return surface;
+        if self.mesh.has_frames() {
+            self.bend(&mut surface, b, &chart);
         }
+        surface
+    }
+
+    /// Gives a surface the shading frame of vertex normals and tangents at barycentric weights `b`.
+    fn bend(&self, surface: &mut SurfaceInteraction, b: [f32; 3], chart: &Chart) {
+        let (normals, tangents) = (self.mesh.normals(self.index), self.mesh.tangents(self.index));
         let ns = normals.map_or(surface.n, |n| mix(b, n).normalize_or(surface.n));
-        let tangent = tangents.map_or(dpdu, |s| {
+        let tangent = tangents.map_or(surface.dpdu, |s| {
             let s = mix(b, s);
-            if s.length_squared() == 0.0 { dpdu } else { s }
+            if s.length_squared() == 0.0 { surface.dpdu } else { s }
         });
         let ts = ns.cross(tangent);
         let (ss, ts) = if ts.length_squared() > 0.0 {
@@ -132,7 +130,7 @@ impl<'a> Triangle<'a> {
             (frame.x, frame.y)
         };
         let [dndu, dndv] = match normals {
-            Some([n0, n1, n2]) if !degenerate_uv => by_uv(n0 - n2, n1 - n2),
+            Some(normals) if !chart.is_degenerate() => chart.derivatives(normals),
             // The same arbitrary tangents as of the position.
             Some([n0, n1, n2]) => match (n2 - n0).cross(n1 - n0).try_normalize() {
                 Some(dn) => {
@@ -147,7 +145,6 @@ impl<'a> Triangle<'a> {
             surface.n = -surface.n;
         }
         surface.shading = Shading { n: ns, dpdu: ss, dpdv: ts, dndu, dndv };
-        surface
     }
 
     fn point(&self, b: [f32; 3], pdf: f32) -> ShapeSample {
@@ -207,6 +204,37 @@ impl<'a> Triangle<'a> {
         let cosine = |p: Vec3| reference.ns.dot((p - reference.p).normalize_or_zero());
         let [a, b, c] = self.positions().map(cosine);
         corner_weights(reference, [b, b, a, c])
+    }
+}
+
+/// The texture coordinates over a triangle.
+struct Chart {
+    /// At the vertices.
+    uvs: [Vec2; 3],
+    /// Those of the first two less that of the third.
+    duv: [Vec2; 2],
+    determinant: f32,
+}
+
+impl Chart {
+    #[inline]
+    fn new(uvs: [Vec2; 3]) -> Self {
+        let duv = [uvs[0] - uvs[2], uvs[1] - uvs[2]];
+        Self { uvs, duv, determinant: duv[0].perp_dot(duv[1]) }
+    }
+
+    /// Whether the texture coordinates do not span the plane.
+    #[inline]
+    fn is_degenerate(&self) -> bool {
+        !(self.determinant.abs() >= 1e-9)
+    }
+
+    /// Derivatives by u and v of what is linear over the triangle, from its values at the vertices.
+    #[inline]
+    fn derivatives(&self, [x0, x1, x2]: [Vec3; 3]) -> [Vec3; 2] {
+        let ([d02, d12], [x02, x12]) = (self.duv, [x0 - x2, x1 - x2]);
+        let s = 1.0 / self.determinant;
+        [(x02 * d12.y - x12 * d02.y) * s, (x12 * d02.x - x02 * d12.x) * s]
     }
 }
 

@@ -5,6 +5,7 @@ mod search;
 
 use crate::{
     Candidate, Hit, InstanceId, Primitive, PrimitiveId, Shape, ShapeHit, SurfaceInteraction, bvh::Level,
+    interaction::toward_origin,
 };
 use hierarchies::Hierarchies;
 use search::{Search, State};
@@ -116,11 +117,13 @@ impl World {
     }
 
     /// A geometry.
+    #[inline]
     pub fn geometry(&self, id: Id<Geometry>) -> &Geometry {
         &self.geometries[id.index()]
     }
 
     /// A primitive, in the space of its shape.
+    #[inline]
     pub fn primitive(&self, id: PrimitiveId) -> Primitive<'_> {
         self.geometries[id.geometry.index()].shape.primitive(id.index as usize)
     }
@@ -170,6 +173,7 @@ impl World {
     }
 
     /// The transform of an instance at a time; `None` for the world itself.
+    #[inline]
     pub fn placement_at(&self, instance: InstanceId, time: f32) -> Option<Transform> {
         instance.is_some().then(|| self.hierarchies.placements[instance.0 as usize].at(time))
     }
@@ -178,14 +182,17 @@ impl World {
     pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let shape_hit = ShapeHit { t: hit.t, u: hit.u, v: hit.v };
         let primitive = self.primitive(hit.primitive);
-        let surface = match self.placement_at(hit.instance, ray.time) {
+        let mut surface = match self.placement_at(hit.instance, ray.time) {
             None => primitive.interaction(ray, &shape_hit),
             Some(t) => {
-                let local = primitive.interaction(&t.inverse().ray(ray), &shape_hit);
-                SurfaceInteraction { wo: -ray.direction.normalize(), ..local.transformed(&t) }
+                let mut surface = primitive.interaction(&t.inverse().ray(ray), &shape_hit).transformed(&t);
+                surface.wo = toward_origin(ray);
+                surface
             }
         };
-        surface.of(hit)
+        surface.primitive = hit.primitive;
+        surface.instance = hit.instance;
+        surface
     }
 
     /// Texture coordinates at a hit of `ray`.

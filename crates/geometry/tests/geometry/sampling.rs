@@ -203,7 +203,9 @@ fn rectangles_have_the_normals_of_their_patches() {
         let (Some(rectangle), Some(n)) = (rectangle, n) else { continue };
         for u in [Vec2::new(0.2, 0.7), Vec2::new(0.9, 0.1)] {
             let s = rectangle.sample_from(&from, u).unwrap();
-            assert_eq!((s.n, s.param), (n, (s.p / Vec3::new(2.0, 1.0, 1.0)).truncate()));
+            let place = (s.p / Vec3::new(2.0, 1.0, 1.0)).truncate();
+            assert_eq!(s.n, n);
+            assert!(s.param.distance(place) < 1e-6, "{s:?}");
             assert!((s.uv - (0.5 * s.param + Vec2::new(0.0, 0.5))).length() < 1e-6, "{s:?}");
             assert_eq!(Some(s), shape.primitive(0).sample_from(&from, u));
         }
