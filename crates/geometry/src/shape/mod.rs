@@ -1,5 +1,6 @@
 //! Shapes: what a ray can hit and a light can shine from.
 
+mod ball;
 mod bilinear_patch;
 mod cylinder;
 mod disk;
@@ -131,7 +132,7 @@ impl Primitive<'_> {
     }
 
     /// The surface at a hit of `ray`, in the space of the shape's world.
-    #[inline]
+    #[inline(always)]
     pub fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
         dispatch!(self, s => s.interaction(ray, hit))
     }

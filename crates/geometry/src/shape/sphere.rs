@@ -1,15 +1,14 @@
 use super::{
     ShapeError, ShapeHit,
+    ball::Ball,
     quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
     NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, sample::pdf_by_solid_angle,
 };
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 use tenfold_math::ops;
-use tenfold_math::{
-    Bounds3, Frame, Ray, Transform, Vec2, Vec3, gamma, offset_ray_origin, spherical_direction, sqr,
-};
+use tenfold_math::{Bounds3, Ray, Transform, Vec2, Vec3, gamma};
 
 /// What a [`Sphere`] is made from; the default is the whole unit sphere.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -49,12 +48,9 @@ pub struct Sphere {
     phi_max: f32,
     /// In the world.
     area: f32,
-    /// World centre and radius of a whole sphere that is still round in the world.
-    round: Option<(Vec3, f32)>,
+    /// The sphere in the world, where it is whole and still round.
+    round: Option<Ball>,
 }
-
-/// Below this sin² of the half angle (1.5°), 1 − cos θ is taken from its series.
-const SMALL_SIN2: f32 = 0.000_685_23;
 
 impl Sphere {
     /// A sphere; `z_min` and `z_max` may be given in either order and are cut to the sphere.
@@ -76,8 +72,10 @@ impl Sphere {
         let phi_max = phi_max.clamp(0.0, TAU);
         let placement = Placement::new(to_world, reverse_orientation);
         let whole = z_min == -radius && z_max == radius && phi_max == TAU;
-        let round =
-            placement.similarity.filter(|_| whole).map(|scale| (to_world.point(Vec3::ZERO), scale * radius));
+        let round = placement
+            .similarity
+            .filter(|_| whole)
+            .map(|scale| Ball { centre: to_world.point(Vec3::ZERO), radius: scale * radius });
         let mut sphere = Self {
             placement,
             radius,
@@ -126,7 +124,7 @@ impl Sphere {
             .placement
             .to_world
             .bounds(&Bounds3::new(Vec3::new(-r, -r, self.z_min), Vec3::new(r, r, self.z_max)));
-        if let Some((c, r)) = self.round {
+        if let Some(Ball { centre: c, radius: r }) = self.round {
             // The box of a turned box is larger than that of the ball.
             let ball = Bounds3::new(c - r, c + r).expanded(1e-5 * (r + c.abs().max_element()));
             return Bounds3 { min: b.min.max(ball.min), max: b.max.min(ball.max) };
@@ -146,7 +144,17 @@ impl Sphere {
     fn surface(&self, ray: &ObjectRay, t: f64) -> (Vec3, f32) {
         let p = ray.at(t);
         let r = f64::from(self.radius);
-        let mut p = (p * (r / p.length())).as_vec3();
+        self.off_pole((p * (r / p.length())).as_vec3())
+    }
+
+    /// [`Self::surface`] where the ball has the unit normal `outward` in the world.
+    fn surface_of_ball(&self, ball: &Ball, outward: Vec3) -> (Vec3, f32) {
+        self.off_pole(self.placement.to_world.inverse_affine().transform_vector3(ball.radius * outward))
+    }
+
+    /// An object-space point and its azimuth, which the poles do not have: off the pole.
+    #[inline]
+    fn off_pole(&self, mut p: Vec3) -> (Vec3, f32) {
         if p.x == 0.0 && p.y == 0.0 {
             p.x = 1e-5 * self.radius;
         }
@@ -166,6 +174,10 @@ impl Sphere {
         t_max: f32,
         accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
+        if let Some(ball) = &self.round {
+            let ObjectRay { o, d, o_error } = ball.ray(ray);
+            return roots(o, d, o_error, f64::from(ball.radius))?.first_hit(t_max, |_| false, accept);
+        }
         let object = self.placement.ray(ray);
         let roots = roots(object.o, object.d, object.o_error, f64::from(self.radius))?;
         let whole = self.phi_max == TAU && self.z_min == -self.radius && self.z_max == self.radius;
@@ -184,28 +196,47 @@ impl Sphere {
     }
 
     pub(super) fn uv(&self, ray: &Ray, hit: &ShapeHit) -> Vec2 {
-        let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
+        let (p, phi) = match &self.round {
+            Some(ball) => self.surface_of_ball(ball, ball.outward(ray, hit.t)),
+            None => self.surface(&self.placement.ray(ray), f64::from(hit.t)),
+        };
         self.object_uv(p, phi)
     }
 
-    pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
-        let uv = self.object_uv(p, phi);
+    /// Derivatives by the parameters of an object-space point.
+    #[inline]
+    fn derivatives(&self, p: Vec3) -> [Vec3; 2] {
         let (phi_max, theta_range) = (self.phi_max, self.theta_z_max - self.theta_z_min);
         let z_radius = (p.x * p.x + p.y * p.y).sqrt();
         let (cos_phi, sin_phi) = (p.x / z_radius, p.y / z_radius);
         let dpdu = Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0);
-        let dpdv = theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius);
-        // ∂p/∂u × ∂p/∂v points outward, and the unit normal moves as the point does.
-        let n = p / self.radius;
+        [dpdu, theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius)]
+    }
+
+    pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
+        let flipped = |n: Vec3| if self.placement.flip { -n } else { n };
+        if let Some(ball) = &self.round {
+            let outward = ball.outward(ray, hit.t);
+            let (object, phi) = self.surface_of_ball(ball, outward);
+            let [dpdu, dpdv] = self.derivatives(object).map(|d| self.placement.to_world.vector(d));
+            let [p, p_error] = ball.point(outward);
+            // The unit normal moves as the point does.
+            let [dndu, dndv] = [dpdu, dpdv].map(|d| d / ball.radius);
+            let (n, uv) = (flipped(outward), self.object_uv(object, phi));
+            return SurfaceInteraction::new(p, p_error, n, uv, Vec2::ZERO, [dpdu, dpdv, dndu, dndv], ray);
+        }
+        let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
+        let [dpdu, dpdv] = self.derivatives(p);
         let [dndu, dndv] = [dpdu, dpdv].map(|d| d / self.radius);
+        let (n, uv, derivatives) =
+            (flipped(p / self.radius), self.object_uv(p, phi), [dpdu, dpdv, dndu, dndv]);
         self.placement.place(&SurfaceInteraction::new(
             p,
             gamma(5) * p.abs(),
-            if self.placement.flip { -n } else { n },
+            n,
             uv,
             Vec2::ZERO,
-            [dpdu, dpdv, dndu, dndv],
+            derivatives,
             ray,
         ))
     }
@@ -234,68 +265,27 @@ impl Sphere {
         1.0 / (self.object_area() * self.placement.area_scale(p))
     }
 
-    /// sin² of the half angle of the cone that a round sphere fills, where `reference` is outside.
-    fn cone(&self, reference: &ReferencePoint) -> Option<Cone> {
-        let (centre, radius) = self.round?;
-        let origin = offset_ray_origin(reference.p, reference.p_error, reference.n, centre - reference.p);
-        if origin.distance_squared(centre) <= radius * radius {
-            return None;
-        }
-        let sin2 = radius * radius / reference.p.distance_squared(centre);
-        if !(sin2 < 1.0) {
-            return None;
-        }
-        let one_minus_cos = if sin2 < SMALL_SIN2 {
-            // 1 − √(1 − s) = s/2 + s²/8 + …
-            sin2 * (0.5 + 0.125 * sin2)
-        } else {
-            1.0 - (1.0 - sin2).sqrt()
-        };
-        Some(Cone { centre, radius, sin2, one_minus_cos })
-    }
-
     pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
-        let Some(Cone { centre, radius, sin2, one_minus_cos }) = self.cone(reference) else {
+        let Some((ball, cone)) = self.round.and_then(|ball| Some((ball, ball.seen_from(reference)?))) else {
             return self.sample_area(u)?.by_solid_angle(reference);
         };
-        let to_centre = centre - reference.p;
-        // q = 1 − cos θ of the direction, uniform in the cone; sin²θ = q·(2 − q). The very middle of the square, which chance does
-        // not hit, is sent to that of the cone, for who freezes points there.
-        let q = if u == Vec2::splat(0.5) { 0.0 } else { u.x * one_minus_cos };
-        let sin2_theta = q * (2.0 - q);
-        // The angle at the centre between the nearest point and the sampled one
-        // (pbrt book, 4th edition, eq. 6.14).
-        let sin_max = sin2.sqrt();
-        let cos_alpha = sin2_theta / sin_max + (1.0 - q) * (1.0 - sin2_theta / sin2).max(0.0).sqrt();
-        let sin_alpha = (1.0 - sqr(cos_alpha)).max(0.0).sqrt();
-        let w = spherical_direction(sin_alpha, cos_alpha.min(1.0), u.y * TAU);
-        let outward = -Frame::from_z(to_centre.normalize()).to_world(w);
-        let p = centre + radius * outward;
-        let object = self.placement.to_world.inverse().point(p);
-        let phi = ops::atan2(object.y, object.x);
-        let object = object * (self.radius / object.length());
+        let outward = ball.sample(&cone, reference, u);
+        let [p, p_error] = ball.point(outward);
+        let (object, phi) = self.surface_of_ball(&ball, outward);
         Some(ShapeSample {
             p,
-            p_error: gamma(4) * centre.abs() + Vec3::splat(gamma(12) * radius),
+            p_error,
             n: if self.placement.flip { -outward } else { outward },
-            uv: self.object_uv(object, if phi < 0.0 { phi + TAU } else { phi }),
+            uv: self.object_uv(object, phi),
             param: Vec2::ZERO,
-            pdf: 1.0 / (2.0 * PI * one_minus_cos),
+            pdf: cone.pdf(),
         })
     }
 
     pub(super) fn pdf_from_point(&self, reference: &ReferencePoint, point: &SurfacePoint) -> f32 {
-        match self.cone(reference) {
-            Some(cone) => 1.0 / (2.0 * PI * cone.one_minus_cos),
+        match self.round.and_then(|ball| ball.seen_from(reference)) {
+            Some(cone) => cone.pdf(),
             None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
         }
     }
-}
-
-/// A round sphere seen from outside.
-struct Cone {
-    centre: Vec3,
-    radius: f32,
-    sin2: f32,
-    one_minus_cos: f32,
 }

@@ -34,7 +34,7 @@ impl<'a> Triangle<'a> {
     }
 
     /// Unit normal by the order of the vertices; zero without area.
-    #[inline]
+    #[inline(always)]
     fn vertex_order_normal(&self) -> Vec3 {
         let [a, b, c] = self.positions();
         unit_cross(b - a, c - a).unwrap_or_default()
@@ -82,7 +82,7 @@ impl<'a> Triangle<'a> {
         mix(weights(hit.u, hit.v), self.mesh.uvs(self.index))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
         let p = self.positions();
         let b = weights(hit.u, hit.v);

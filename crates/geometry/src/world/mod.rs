@@ -181,15 +181,13 @@ impl World {
     /// The surface at a hit of `ray`, in world space.
     pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let shape_hit = ShapeHit { t: hit.t, u: hit.u, v: hit.v };
-        let primitive = self.primitive(hit.primitive);
-        let mut surface = match self.placement_at(hit.instance, ray.time) {
-            None => primitive.interaction(ray, &shape_hit),
-            Some(t) => {
-                let mut surface = primitive.interaction(&t.inverse().ray(ray), &shape_hit).transformed(&t);
-                surface.wo = toward_origin(ray);
-                surface
-            }
-        };
+        let placement = self.placement_at(hit.instance, ray.time);
+        let local = placement.as_ref().map_or(*ray, |t| t.inverse().ray(ray));
+        let mut surface = self.primitive(hit.primitive).interaction(&local, &shape_hit);
+        if let Some(t) = placement {
+            surface = surface.transformed(&t);
+            surface.wo = toward_origin(ray);
+        }
         surface.primitive = hit.primitive;
         surface.instance = hit.instance;
         surface

@@ -41,7 +41,8 @@ fn polynomials<const N: usize>(z: f64, coefficients: [[f64; 2]; N]) -> [f64; 2] 
 /// Sine and cosine to within a unit in the last place; beside multiples of π/2 other than 0 to within 10⁻¹⁸.
 #[inline]
 pub(super) fn sin_cos(x: f64) -> (f64, f64) {
-    if !(x.abs() <= MOST) {
+    let is_usual = x.abs() <= MOST;
+    if !is_usual {
         return (libm::sin(x), libm::cos(x));
     }
     let (r, quarters) = reduce(x);
@@ -65,7 +66,8 @@ pub(super) fn sin_cos(x: f64) -> (f64, f64) {
 #[inline]
 pub(super) fn sin_cos_f32(x: f32) -> (f32, f32) {
     let x = f64::from(x);
-    if !(x.abs() <= MOST) {
+    let is_usual = x.abs() <= MOST;
+    if !is_usual {
         return (libm::sin(x) as f32, libm::cos(x) as f32);
     }
     let (r, quarters) = reduce(x);
@@ -125,7 +127,8 @@ fn angle<const N: usize>(y: f64, x: f64, coefficients: [[f64; 2]; N]) -> f64 {
 #[inline]
 pub(super) fn atan2(y: f64, x: f64) -> f64 {
     let size = if y.abs() > x.abs() { y.abs() } else { x.abs() };
-    if !(size > 0.0 && size < 1e300) {
+    let is_usual = size > 0.0 && size < 1e300;
+    if !is_usual {
         return libm::atan2(y, x);
     }
     angle(y, x, ARC_TANGENT)
@@ -134,7 +137,7 @@ pub(super) fn atan2(y: f64, x: f64) -> f64 {
 /// [`atan2`] to the precision of single floats.
 #[inline]
 pub(super) fn atan2_f32(y: f32, x: f32) -> f32 {
-    if !(x != 0.0 || y != 0.0) || !x.is_finite() || !y.is_finite() {
+    if (x == 0.0 && y == 0.0) || !x.is_finite() || !y.is_finite() {
         return libm::atan2f(y, x);
     }
     angle(f64::from(y), f64::from(x), ARC_TANGENT_F32) as f32
