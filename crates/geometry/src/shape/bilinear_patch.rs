@@ -3,6 +3,7 @@ use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
     sample::pdf_by_solid_angle,
 };
+use glam::Vec3A;
 use std::ops::{Add, Mul};
 use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
 use tenfold_sampling::warp::{bilinear_pdf, sample_bilinear};
@@ -96,19 +97,22 @@ impl<'a> BilinearPatch<'a> {
         t_max: f32,
         mut accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
-        let [p00, p10, p01, p11] = self.positions().map(Vec3::as_dvec3);
+        let corners = self.positions();
+        let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (e00, e11) = (p01 - p00, p11 - p10);
         let a = (p10 - p00).cross(d).dot(e11 - e00);
         let c = (p00 - o).cross(d).dot(e00);
         let b = (p10 - o).cross(d).dot(e11) - (a + c);
-        let mut hits = [None; 2];
-        let size = [p00, p10, p01, p11, o].iter().fold(0.0, |m, p| p.abs().max_element().max(m));
-        let t_min = 1e-13 * size / d.length();
-        for (slot, u) in hits.iter_mut().zip(quadratic_roots(a, b, c)) {
+        // Nearer than rounding can tell from the origin's own surface.
+        let t_min = || {
+            let size = corners.iter().fold(ray.origin.abs(), |m, p| m.max(p.abs())).max_element();
+            1e-13 * f64::from(size) / d.length()
+        };
+        let hit = |u: f64| {
             // Also leaves out NaN.
             if !(-SLACK..=1.0 + SLACK).contains(&u) {
-                continue;
+                return None;
             }
             let start = p00 + u * (p10 - p00);
             let across = p01 + u * (p11 - p01) - start;
@@ -117,11 +121,11 @@ impl<'a> BilinearPatch<'a> {
             let scale = 1.0 / perpendicular.length_squared();
             let v = delta.cross(d).dot(perpendicular) * scale;
             let t = delta.cross(across).dot(perpendicular) * scale;
-            if (-SLACK..=1.0 + SLACK).contains(&v) && t > t_min && (t as f32) < t_max {
-                let inside = |x: f64| (x as f32).clamp(0.0, 1.0);
-                *slot = Some(ShapeHit { t: t as f32, u: inside(u), v: inside(v) });
-            }
-        }
+            let is_hit = (-SLACK..=1.0 + SLACK).contains(&v) && t > 0.0 && (t as f32) < t_max && t > t_min();
+            let inside = |x: f64| (x as f32).clamp(0.0, 1.0);
+            is_hit.then(|| ShapeHit { t: t as f32, u: inside(u), v: inside(v) })
+        };
+        let mut hits = quadratic_roots(a, b, c).map(hit);
         if let [Some(first), Some(second)] = hits
             && second.t < first.t
         {
@@ -134,34 +138,37 @@ impl<'a> BilinearPatch<'a> {
         self.texture_uv(Vec2::new(hit.u, hit.v))
     }
 
+    #[inline]
     fn texture_uv(&self, uv: Vec2) -> Vec2 {
         self.mesh.uvs(self.index).map_or(uv, |corners| bilerp(uv, corners))
     }
 
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let p = self.positions();
+        // In vector registers.
+        let p = self.positions().map(Vec3A::from);
         let uv = Vec2::new(hit.u, hit.v);
-        let [mut dpdu, mut dpdv] = derivatives(uv, p);
-        let n = unit_cross(dpdu, dpdv).unwrap_or_else(|| self.unit_normal(uv));
+        let mut dp = derivatives(uv, p);
+        let across = unit_cross(dp[0].into(), dp[1].into());
+        let n = across.unwrap_or_else(|| self.unit_normal(uv));
         let twist = (p[0] - p[2]) + (p[3] - p[1]);
-        let [mut dndu, mut dndv] =
-            if twist == Vec3::ZERO { [Vec3::ZERO; 2] } else { normal_derivatives(dpdu, dpdv, n.dot(twist)) };
+        let is_twisted = twist != Vec3A::ZERO;
+        let mut dn = [Vec3A::ZERO; 2];
+        if is_twisted {
+            dn = normal_derivatives(dp, Vec3A::from(n).dot(twist));
+        }
         let by_texture = self.texture_jacobian(uv);
-        if let Some(j) = by_texture {
-            let by_st = |du: Vec3, dv: Vec3| [du * j[0].x + dv * j[0].y, du * j[1].x + dv * j[1].y];
-            let [dpds, mut dpdt] = by_st(dpdu, dpdv);
-            let [dnds, mut dndt] = by_st(dndu, dndv);
+        if let (Some([by_s, by_t]), Some(_)) = (by_texture, across) {
             // The frame keeps its hand where the texture is mirrored.
-            if dpds.cross(dpdt).dot(n) < 0.0 {
-                (dpdt, dndt) = (-dpdt, -dndt);
-            }
-            if dpds.cross(dpdt) != Vec3::ZERO {
-                (dpdu, dpdv, dndu, dndv) = (dpds, dpdt, dnds, dndt);
+            let by = [by_s, if by_s.perp_dot(by_t) < 0.0 { -by_t } else { by_t }];
+            dp = by.map(|j| dp[0] * j.x + dp[1] * j.y);
+            if is_twisted {
+                dn = by.map(|j| dn[0] * j.x + dn[1] * j.y);
             }
         }
+        let [dpdu, dpdv, dndu, dndv] = [dp[0], dp[1], dn[0], dn[1]].map(Vec3::from);
         let mut surface = SurfaceInteraction::new(
-            bilerp(uv, p),
-            gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
+            bilerp(uv, p).into(),
+            (gamma(6) * p.iter().fold(Vec3A::ZERO, |m, p| m.max(p.abs()))).into(),
             if self.mesh.flip { -n } else { n },
             self.texture_uv(uv),
             uv,
@@ -172,8 +179,8 @@ impl<'a> BilinearPatch<'a> {
         let Some(normals) = self.mesh.normals(self.index) else { return surface };
         if let Some(ns) = bilerp(uv, normals).try_normalize() {
             let [mut dndu, mut dndv] = derivatives(uv, normals);
-            if let Some(j) = by_texture {
-                (dndu, dndv) = (dndu * j[0].x + dndv * j[0].y, dndu * j[1].x + dndv * j[1].y);
+            if let Some(by_texture) = by_texture {
+                [dndu, dndv] = by_texture.map(|j| dndu * j.x + dndv * j.y);
             }
             // Turn the tangents along with the normal, by the shortest way.
             let turn = Quat::from_rotation_arc(surface.n, ns);
@@ -190,8 +197,8 @@ impl<'a> BilinearPatch<'a> {
     fn texture_jacobian(&self, uv: Vec2) -> Option<[Vec2; 2]> {
         let [du, dv] = derivatives(uv, self.mesh.uvs(self.index)?);
         let determinant = du.perp_dot(dv);
-        (determinant.abs() > 1e-12)
-            .then(|| [Vec2::new(dv.y, -du.y) / determinant, Vec2::new(-dv.x, du.x) / determinant])
+        let scale = 1.0 / determinant;
+        (determinant.abs() > 1e-12).then(|| [Vec2::new(dv.y, -du.y) * scale, Vec2::new(-dv.x, du.x) * scale])
     }
 
     /// Unit `∂p/∂u × ∂p/∂v`; where an edge has shrunk to a point, that of the middle.
@@ -257,11 +264,11 @@ impl<'a> BilinearPatch<'a> {
 
 /// The derivatives of the unit normal by u and v from those of the position, where `twist` is the part along the normal of the mixed
 /// second one, and the others vanish: the Weingarten equations, pbrt book, 4th edition, eq. 6.6.
-fn normal_derivatives(dpdu: Vec3, dpdv: Vec3, twist: f32) -> [Vec3; 2] {
+fn normal_derivatives([dpdu, dpdv]: [Vec3A; 2], twist: f32) -> [Vec3A; 2] {
     let (uu, uv, vv) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
     let determinant = uu * vv - uv * uv;
     if determinant == 0.0 {
-        return [Vec3::ZERO; 2];
+        return [Vec3A::ZERO; 2];
     }
     let s = twist / determinant;
     [(uv * s) * dpdu - (uu * s) * dpdv, (uv * s) * dpdv - (vv * s) * dpdu]
@@ -293,6 +300,7 @@ pub(super) fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(
 }
 
 /// Derivatives by u and v of [`bilerp`].
+#[inline]
 fn derivatives<T>(uv: Vec2, [x00, x10, x01, x11]: [T; 4]) -> [T; 2]
 where
     T: Copy + Mul<f32, Output = T> + Add<Output = T> + std::ops::Sub<Output = T>,

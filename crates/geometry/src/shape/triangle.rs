@@ -87,35 +87,44 @@ impl<'a> Triangle<'a> {
         let p = self.positions();
         let b = weights(hit.u, hit.v);
         let order_n = self.vertex_order_normal();
-        let chart = Chart::new(self.mesh.uvs(self.index));
-        let [dpdu, dpdv] = if self.mesh.parts().uvs.is_none() {
+        let (uv, [dpdu, dpdv]) = if self.mesh.parts().uvs.is_none() {
             // What the chart would give, up to rounding.
-            [p[1] - p[0], p[2] - p[1]]
-        } else if chart.is_degenerate() {
-            // Any tangents; turned as pbrt's, whose normal here is against the order of the vertices.
-            let frame = Frame::from_z(-order_n);
-            [frame.x, frame.y]
+            (Vec2::new(b[1] + b[2], b[2]), [p[1] - p[0], p[2] - p[1]])
         } else {
-            chart.derivatives(p)
+            let chart = self.chart();
+            let derivatives = if chart.is_degenerate() {
+                // Any tangents; turned as pbrt's, whose normal here is against the order of the vertices.
+                let frame = Frame::from_z(-order_n);
+                [frame.x, frame.y]
+            } else {
+                chart.derivatives(p)
+            };
+            (mix(b, chart.uvs), derivatives)
         };
         let mut surface = SurfaceInteraction::new(
             mix(b, p),
             gamma(7) * mix(b.map(f32::abs), p.map(Vec3::abs)),
             if self.mesh.flip { -order_n } else { order_n },
-            mix(b, chart.uvs),
+            uv,
             Vec2::new(hit.u, hit.v),
             [dpdu, dpdv, Vec3::ZERO, Vec3::ZERO],
             ray,
         );
         surface.face_index = self.mesh.face_index(self.index);
         if self.mesh.has_frames() {
-            self.bend(&mut surface, b, &chart);
+            self.bend(&mut surface, b);
         }
         surface
     }
 
+    #[inline]
+    fn chart(&self) -> Chart {
+        Chart::new(self.mesh.uvs(self.index))
+    }
+
     /// Gives a surface the shading frame of vertex normals and tangents at barycentric weights `b`.
-    fn bend(&self, surface: &mut SurfaceInteraction, b: [f32; 3], chart: &Chart) {
+    fn bend(&self, surface: &mut SurfaceInteraction, b: [f32; 3]) {
+        let chart = self.chart();
         let (normals, tangents) = (self.mesh.normals(self.index), self.mesh.tangents(self.index));
         let ns = normals.map_or(surface.n, |n| mix(b, n).normalize_or(surface.n));
         let tangent = tangents.map_or(surface.dpdu, |s| {

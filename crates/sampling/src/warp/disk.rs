@@ -1,5 +1,5 @@
 use super::turn;
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
 use tenfold_math::Vec2;
 use tenfold_math::ops;
 
@@ -11,13 +11,11 @@ pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
     if p == Vec2::ZERO {
         return Vec2::ZERO;
     }
-    let (r, theta) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
-    } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    let (s, c) = ops::sin_cos(theta);
-    r * Vec2::new(c, s)
+    // Selected, not branched: which way is as good as random.
+    let is_wide = p.x.abs() > p.y.abs();
+    let (r, across) = if is_wide { (p.x, p.y) } else { (p.y, p.x) };
+    let (s, c) = ops::sin_cos(FRAC_PI_4 * (across / r));
+    r * if is_wide { Vec2::new(c, s) } else { Vec2::new(s, c) }
 }
 
 /// The numbers that [`sample_uniform_disk_concentric`] maps to `p`.
