@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use tenfold_math::ops;
 use tenfold_math::{UVec2, Vec2};
-use tenfold_sampling::{Dimension, PixelSample, Sampler, SamplerKind, Variable};
+use tenfold_sampling::{Dimension, PixelSample, SampleRoom, Sampler, SamplerKind, Variable};
 use tenfold_testkit::{Options, Rng, Welford, chi2, t_test_mean};
 
 const KINDS: usize = SamplerKind::ALL.len();
@@ -365,4 +365,35 @@ fn z_order_gives_neighbours_different_errors() {
     };
     let (z, padded) = (variance(SamplerKind::ZSobol), variance(SamplerKind::PaddedSobol));
     assert!(z * 4.0 < padded, "{z} {padded}");
+}
+
+#[test]
+fn samples_taken_in_turn_have_the_numbers_of_each_alone() {
+    // One room for all: what it held of other samplers, pixels, rounds and blocks must not be seen.
+    let mut room = SampleRoom::default();
+    for s in samplers(5).chain(samplers(6)) {
+        let n = s.samples_per_pixel();
+        for (pixel, indices) in [
+            (UVec2::new(3, 4), 0..n),
+            (UVec2::new(3, 5), 0..n),
+            (UVec2::new(3, 5), n / 2..2 * n + 1),
+            (UVec2::new(70_000, 1), 1..n.min(20)),
+        ] {
+            let mut next = indices.start;
+            s.for_each(pixel, indices.clone(), &mut room, |sample| {
+                let alone = s.at(pixel, next);
+                assert_eq!((sample.pixel(), sample.index()), (pixel, next));
+                for bounce in [0, 1, 7, 8, 300] {
+                    for variable in Variable::ALL {
+                        let d = Dimension::new(variable, bounce);
+                        assert_eq!(sample.get_1d(d), alone.get_1d(d), "{s:?} {d:?}");
+                        assert_eq!(sample.get_2d(d), alone.get_2d(d), "{s:?} {d:?}");
+                        assert_eq!(sample.hash(d), alone.hash(d), "{s:?} {d:?}");
+                    }
+                }
+                next += 1;
+            });
+            assert_eq!(next, indices.end.max(indices.start));
+        }
+    }
 }

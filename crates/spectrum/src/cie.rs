@@ -3,19 +3,19 @@
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use tenfold_math::Vec3;
+use tenfold_math::Vec4;
 
 use crate::spectrum::{SAMPLES, dense_index};
-use crate::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths, Spectrum, Xyz, data};
+use crate::{LAMBDA_MIN, N, SampledSpectrum, SampledWavelengths, Spectrum, Xyz, data};
 
 /// ∫ ȳ(λ) dλ over the rendered range, in nm: the luminance scale of pbrt-v4.
 pub const CIE_Y_INTEGRAL: f32 = 106.856895;
 
 static CIE1931: LazyLock<Observer> = LazyLock::new(|| {
-    let mut table = vec![Vec3::ZERO; SAMPLES];
+    let mut table = Box::new([Vec4::ZERO; SAMPLES + 1]);
     for row in data::rows(include_str!("../data/cie1931.csv")) {
         if let (&[_, x, y, z], Some(i)) = (row.as_slice(), dense_index(row[0])) {
-            table[i] = Vec3::new(x, y, z);
+            table[i] = Vec4::new(x, y, z, 0.0);
         }
     }
     Observer { table }
@@ -24,7 +24,8 @@ static CIE1931: LazyLock<Observer> = LazyLock::new(|| {
 /// Colour matching functions x̄, ȳ, z̄, tabulated at 1 nm and looked up at the nearest nanometre.
 #[derive(Debug)]
 pub struct Observer {
-    table: Vec<Vec3>,
+    /// The three functions at every nanometre, and zeros for all wavelengths outside.
+    table: Box<[Vec4; SAMPLES + 1]>,
 }
 
 impl Observer {
@@ -37,7 +38,7 @@ impl Observer {
     /// (x̄, ȳ, z̄) at a wavelength in nm; 0 outside the rendered range.
     #[inline]
     pub fn matching(&self, lambda: f32) -> Xyz {
-        Xyz(dense_index(lambda).and_then(|i| self.table.get(i)).copied().unwrap_or(Vec3::ZERO))
+        Xyz(self.table[dense_index(lambda).unwrap_or(SAMPLES)].truncate())
     }
 
     /// One-sample estimate of ∫ L(λ) (x̄, ȳ, z̄)(λ) dλ: the mean over the lanes of L · (x̄, ȳ, z̄) / pdf, lanes of density 0
@@ -45,23 +46,24 @@ impl Observer {
     /// 1 / [`photometric`] of their spectrum instead, so that a light of value 1 measures Y = 1.
     #[inline]
     pub fn to_xyz(&self, l: SampledSpectrum, w: &SampledWavelengths) -> Xyz {
-        let weighted = l.safe_div(SampledSpectrum::new(w.pdf)).to_array();
-        let [a, b, c, d]: [Vec3; 4] = std::array::from_fn(|i| self.matching(w.lambda[i]).0 * weighted[i]);
-        Xyz(((a + b) + (c + d)) * 0.25)
+        let weighted = l.safe_div(SampledSpectrum::new(w.pdf())).to_array();
+        let nearest = w.nearest();
+        let [a, b, c, d]: [Vec4; N] = std::array::from_fn(|i| self.table[nearest[i]] * weighted[i]);
+        Xyz((((a + b) + (c + d)) * 0.25).truncate())
     }
 
     /// The Y of [`Self::to_xyz`] alone.
     #[inline]
     pub fn to_y(&self, l: SampledSpectrum, w: &SampledWavelengths) -> f32 {
-        let y = SampledSpectrum::from_fn(|i| self.matching(w.lambda[i]).0.y);
-        (l * y).safe_div(SampledSpectrum::new(w.pdf)).average()
+        let y = SampledSpectrum::new(w.nearest().map(|i| self.table[i].y));
+        (l * y).safe_div(SampledSpectrum::new(w.pdf())).average()
     }
 }
 
 /// ∫ (x̄, ȳ, z̄) s dλ by a sum over whole nanometres.
 fn integral(s: &Spectrum) -> DVec3 {
-    let steps = CIE1931.table.iter().enumerate();
-    steps.map(|(i, m)| m.as_dvec3() * f64::from(s.eval(LAMBDA_MIN + i as f32))).sum()
+    let steps = CIE1931.table[..SAMPLES].iter().enumerate();
+    steps.map(|(i, m)| m.truncate().as_dvec3() * f64::from(s.eval(LAMBDA_MIN + i as f32))).sum()
 }
 
 /// ∫ ȳ(λ) s(λ) dλ by a sum over whole nanometres. Of an RGB illuminant only the illuminant counts, not the
@@ -81,13 +83,15 @@ pub fn spectrum_to_xyz(s: &Spectrum) -> Xyz {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LAMBDA_MAX, N};
+    use crate::LAMBDA_MAX;
+    use tenfold_math::Vec3;
 
     #[test]
     fn the_table_is_whole() {
         let o = Observer::cie1931();
-        assert_eq!(o.table.len(), SAMPLES);
-        assert!(o.table.iter().all(|v| v.y > 0.0));
+        let rows = &o.table[..SAMPLES];
+        assert!(rows.iter().all(|v| v.y > 0.0));
+        assert_eq!(o.table[SAMPLES], Vec4::ZERO);
         assert_eq!(o.matching(555.2).0, Vec3::new(0.5120501, 1.0, 0.005749999));
         assert_eq!(o.matching(359.0).0, Vec3::ZERO);
         assert_eq!(o.matching(831.0).0, Vec3::ZERO);
@@ -122,15 +126,8 @@ mod tests {
     }
 
     #[test]
-    fn a_terminated_path_counts_its_hero_in_full() {
+    fn one_wavelength_measures_its_matching_functions() {
         let o = Observer::cie1931();
-        let mut w = SampledWavelengths::sample_visible(0.4);
-        let mut other = w;
-        w.terminate_secondary();
-        let hero = o.to_xyz(SampledSpectrum::ONE, &w).0;
-        other.lambda = [other.lambda[0]; N];
-        other.pdf = [other.pdf[0]; N];
-        assert!((hero - o.to_xyz(SampledSpectrum::ONE, &other).0).abs().max_element() < 1e-4);
         let f = SampledWavelengths::fixed(LAMBDA_MAX);
         assert_eq!(o.to_xyz(SampledSpectrum::ONE, &f), o.matching(LAMBDA_MAX));
     }

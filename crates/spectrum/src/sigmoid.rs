@@ -35,7 +35,7 @@ impl SigmoidPolynomial {
     /// Values at the wavelengths of a path.
     #[inline]
     pub fn sample(&self, w: &SampledWavelengths) -> SampledSpectrum {
-        let t = (Vec4::from_array(w.lambda) - MIDDLE) * (1.0 / HALF);
+        let t = (Vec4::from_array(w.lambda()) - MIDDLE) * (1.0 / HALF);
         SampledSpectrum(sigmoid((self.c[2] * t + self.c[1]) * t + self.c[0]))
     }
 
@@ -89,7 +89,7 @@ mod tests {
             let s = SigmoidPolynomial { c };
             let lanes = s.sample(&w);
             for i in 0..crate::N {
-                assert_eq!(lanes[i], s.eval(w.lambda[i]));
+                assert_eq!(lanes[i], s.eval(w.lambda()[i]));
             }
             let max = (0..=4700).map(|i| s.eval(360.0 + i as f32 * 0.1)).fold(0.0, f32::max);
             assert!((s.max_value() - max).abs() < 1e-5);

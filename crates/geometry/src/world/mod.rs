@@ -156,7 +156,7 @@ impl World {
         let mut search = Search::<ANY, true, _> {
             world: self,
             ray,
-            local: *ray,
+            local: ray,
             instance: InstanceId::NONE,
             filter: &filter,
             state,

@@ -20,7 +20,7 @@ pub(super) struct Search<'a, const ANY: bool, const TOP: bool, F> {
     /// As the caller gave it.
     pub(super) ray: &'a Ray,
     /// In the space of this hierarchy.
-    pub(super) local: Ray,
+    pub(super) local: &'a Ray,
     pub(super) instance: InstanceId,
     pub(super) filter: &'a F,
     pub(super) state: State,
@@ -81,7 +81,7 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor fo
         let primitive = self.world.geometries[id.geometry()].shape.primitive(id.index as usize);
         // Shapes look for hits below the limit.
         let limit = next_up(self.state.t_max);
-        let found = primitive.intersect(&self.local, limit, |hit| self.accepts(id, hit));
+        let found = primitive.intersect(self.local, limit, |hit| self.accepts(id, hit));
         match found {
             Some(hit) => {
                 self.take(id, hit);
@@ -104,7 +104,7 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor fo
         let mut below = Search::<ANY, false, F> {
             world: self.world,
             ray: self.ray,
-            local,
+            local: &local,
             instance: InstanceId(index as u32),
             filter: self.filter,
             state: self.state,

@@ -52,6 +52,12 @@ impl<'a> Bsdf<'a> {
         if self.mirrors { self.bxdf.lobes().sharpened() } else { self.bxdf.lobes() }
     }
 
+    /// Whether the lobe's number makes a difference to [`Bsdf::sample`].
+    #[inline]
+    pub fn chooses_lobe(&self) -> bool {
+        !matches!(self.bxdf, Bxdf::Diffuse(_) | Bxdf::Conductor(_)) || self.strategy != ScatterStrategy::Bsdf
+    }
+
     /// As [`Bxdf::is_dispersive`].
     #[inline]
     pub fn is_dispersive(&self) -> bool {

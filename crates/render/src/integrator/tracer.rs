@@ -106,7 +106,7 @@ impl<'a> PathTracer<'a> {
         let mut passes = 0;
         loop {
             sample.workspace.rays.path += 1;
-            let chance = Chance::new(sample.sampler, path.bounce);
+            let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
             let stops = |c: &Candidate<'_>| self.stops(&path.ray, c, chance);
             let Some(hit) = scene.world.intersect(&path.ray, f32::INFINITY, stops) else {
                 self.add_escaped(&path, sample);
@@ -120,7 +120,9 @@ impl<'a> PathTracer<'a> {
             if at_end && !scene.materials.may_be_interface(material) {
                 return;
             }
-            let Some(bsdf) = self.bsdf(&path, &surface, passes, sample) else {
+            // By reference, here and below: these records are large to move.
+            let bsdf = self.bsdf(&path, &surface, passes, sample);
+            let Some(bsdf) = &bsdf else {
                 passes += 1;
                 if passes > MOST_PASSES {
                     return;
@@ -147,16 +149,21 @@ impl<'a> PathTracer<'a> {
                 from = from.seen_from(surface.wo);
             }
             if bsdf.lobes().has_density() {
-                self.add_direct(&path, &surface, &from, &bsdf, parts, sample);
+                self.add_direct(&path, &surface, &from, bsdf, parts, sample);
             }
             if parts {
-                self.part(&path, &surface, &from, &bsdf, sample);
+                self.part(&path, &surface, &from, bsdf, sample);
                 return;
             }
-            let u_lobe = sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce));
+            let u_lobe = if bsdf.chooses_lobe() {
+                sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce))
+            } else {
+                0.0
+            };
             let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
-            let Some(scattered) = bsdf.sample(surface.wo, u_lobe, u, path.lanes.hero()) else { return };
-            if !advance(&mut path, &surface, &from, &bsdf, &scattered) || !survives(&mut path, sample) {
+            let scattered = bsdf.sample(surface.wo, u_lobe, u, path.lanes.hero());
+            let Some(scattered) = &scattered else { return };
+            if !advance(&mut path, &surface, &from, bsdf, scattered) || !survives(&mut path, sample) {
                 return;
             }
         }
@@ -247,20 +254,25 @@ impl<'a> PathTracer<'a> {
         parts: bool,
         sample: &mut Sample<'_>,
     ) {
-        let u_choice = sample.sampler.get_1d(Dimension::light_choice(path.bounce));
-        let u = sample.sampler.get_2d(Dimension::light_point(path.bounce));
         let Strategies { light: strategy, combine, .. } = self.strategies;
         let lights = &self.scene.lights;
-        let Some(light) = lights.sample(strategy, from, u_choice, u, sample.wavelengths) else { return };
+        let u_choice = if lights.has_choice() {
+            sample.sampler.get_1d(Dimension::light_choice(path.bounce))
+        } else {
+            0.0
+        };
+        let u = sample.sampler.get_2d(Dimension::light_point(path.bounce));
+        let light = lights.sample(strategy, from, u_choice, u, sample.wavelengths);
+        let Some(light) = &light else { return };
         let scattering = bsdf.eval_and_pdf(surface.wo, light.wi);
         let cos = light.wi.dot(bsdf.frame().z).abs();
         let contribution = path.beta * scattering.f * light.radiance * cos;
         if contribution.is_black() {
             return;
         }
-        let Some(density) = path.density_of_sampled(combine, &light, scattering.pdf, parts) else { return };
+        let Some(density) = path.density_of_sampled(combine, light, scattering.pdf, parts) else { return };
         sample.workspace.rays.shadow += 1;
-        if self.is_shadowed(from, &light, Chance::new(sample.sampler, path.bounce)) {
+        if self.is_shadowed(from, light, Chance { sampler: sample.sampler, bounce: path.bounce }) {
             return;
         }
         sample.radiance += contribution.safe_div(density);
@@ -310,7 +322,7 @@ impl<'a> PathTracer<'a> {
     }
 
     #[inline]
-    fn is_shadowed(&self, from: &ReferencePoint, light: &LightSample, chance: Chance) -> bool {
+    fn is_shadowed(&self, from: &ReferencePoint, light: &LightSample, chance: Chance<'_>) -> bool {
         let ShadowRay { ray, t_max } = light.shadow_ray(from);
         self.scene.world.occluded(&ray, t_max, |c| {
             // Light passes from one medium into the next.
@@ -321,7 +333,7 @@ impl<'a> PathTracer<'a> {
 
     /// Whether a ray stops at a primitive that may let rays pass: it does not at the holes of an alpha mask.
     #[inline]
-    fn stops(&self, ray: &Ray, candidate: &Candidate<'_>, chance: Chance) -> bool {
+    fn stops(&self, ray: &Ray, candidate: &Candidate<'_>, chance: Chance<'_>) -> bool {
         let scene = self.scene;
         let surface = &scene.surfaces[candidate.user as usize];
         let Some(alpha) = &surface.alpha else { return true };
@@ -340,27 +352,18 @@ impl<'a> PathTracer<'a> {
 /// Decides whether rays that leave a vertex stop at surfaces that are partly there: at each by a number of its own, which is the
 /// same whenever the traversal asks.
 #[derive(Copy, Clone)]
-enum Chance {
-    Drawn(u64),
-    Held(f32),
+struct Chance<'a> {
+    sampler: &'a PixelSample<'a>,
+    bounce: u16,
 }
 
-impl Chance {
-    #[inline]
-    fn new(sampler: &PixelSample<'_>, bounce: u16) -> Self {
-        match sampler.held(Variable::Alpha) {
-            None => Self::Drawn(sampler.hash(Dimension::alpha(bounce))),
-            Some(value) => Self::Held(value.x),
-        }
-    }
-
+impl Chance<'_> {
     /// The number, in `[0, 1)`, of a surface that is hit.
-    #[inline]
     fn of(self, hit: &Hit) -> f32 {
-        let seed = match self {
-            Self::Drawn(seed) => seed,
-            Self::Held(value) => return value,
-        };
+        if let Some(value) = self.sampler.held(Variable::Alpha) {
+            return value.x;
+        }
+        let seed = self.sampler.hash(Dimension::alpha(self.bounce));
         let id = hit.primitive;
         let place = u64::from(hit.t.to_bits()) << 32 | u64::from(id.index);
         let bits = hash::combine(hash::combine(seed, place), id.geometry.index() as u64);

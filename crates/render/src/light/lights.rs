@@ -108,6 +108,12 @@ impl Lights {
         self.all.is_empty()
     }
 
+    /// Whether there is more than one light, so that a number has to choose.
+    #[inline]
+    pub fn has_choice(&self) -> bool {
+        self.all.len() > 1
+    }
+
     /// The light of an id.
     #[inline]
     pub fn get(&self, light: Id<Light>) -> &Light {

@@ -56,7 +56,7 @@ impl Coat {
 
 /// A number of its own for about every sample of a picture.
 fn seed(at: &Point<'_>) -> u64 {
-    let (p, lambda) = (at.context.p, at.waves.light.lambda[0]);
+    let (p, lambda) = (at.context.p, at.waves.light.lambda()[0]);
     [p.x, p.y, p.z, lambda].iter().fold(0, |hash: u64, v| {
         // The increment of splitmix64 keeps zeros from mapping to zeros.
         mix_bits((hash ^ u64::from(v.to_bits())).wrapping_add(0x9e37_79b9_7f4a_7c15))

@@ -9,7 +9,7 @@ use std::{
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 use tenfold_math::UVec2;
-use tenfold_sampling::Sampler;
+use tenfold_sampling::{SampleRoom, Sampler};
 
 /// Samples of a pixel that one work item takes at most.
 pub(super) const BLOCK: u32 = 64;
@@ -54,16 +54,17 @@ pub(super) fn render_item<'a>(
     let mut film = Film::new(tile);
     let mut statistics = Statistics::default();
     let mut workspace = Workspace::default();
+    let mut room = SampleRoom::default();
     for pixel in tile.pixels() {
         let (sampler, indices) = samples(pixel);
         statistics.samples += indices.len() as u64;
         let sum = film.pixel_mut(pixel);
-        for index in indices {
-            let rgb = estimator.sample(&sampler.at(pixel, index), &mut workspace);
+        sampler.for_each(pixel, indices, &mut room, |sample| {
+            let rgb = estimator.sample(sample, &mut workspace);
             if !sum.add(rgb) {
-                statistics.drop_sample(DroppedSample { pixel, index });
+                statistics.drop_sample(DroppedSample { pixel, index: sample.index() });
             }
-        }
+        });
     }
     statistics.rays = workspace.rays;
     (film, statistics)

@@ -96,7 +96,7 @@ pub(crate) fn radiance(
         let mut sums = [0.0; N];
         for turn in 0..N {
             let lambda = std::array::from_fn(|i| LAMBDA[(i + turn) % N]);
-            let wavelengths = SampledWavelengths { lambda, pdf: [1.0; N] };
+            let wavelengths = SampledWavelengths::new(lambda, [1.0; N]);
             let sample = sampler.at(UVec2::ZERO, value * N as u32 + turn as u32);
             let l = tracer.radiance(ray, &wavelengths, &sample, &mut Workspace::default());
             for i in 0..N {

@@ -85,7 +85,7 @@ fn wavelengths_add_up_to_all_light() {
     let (mut rng, mut workspace) = (Rng::new(6), Workspace::default());
     let mut pixel_in_single_wavelengths = |pixel| {
         let sample = |index| {
-            settings.wavelength = Some(SampledWavelengths::sample_visible(rng.f32()).lambda[0]);
+            settings.wavelength = Some(SampledWavelengths::sample_visible(rng.f32()).lambda()[0]);
             PixelEstimator::new(&scene, &settings).sample(&sampler.at(pixel, index), &mut workspace)
         };
         (0..spp).map(sample).sum::<Vec3>() / spp as f32

@@ -14,7 +14,7 @@ use tenfold_testkit::quadrature::{Tolerance, hemisphere, integrate};
 const IMPACTS: [f32; 5] = [0.0, 0.35, 0.7, 0.9, 0.99];
 
 fn wavelengths() -> SampledWavelengths {
-    SampledWavelengths { lambda: LAMBDA, pdf: [1.0; N] }
+    SampledWavelengths::new(LAMBDA, [1.0; N])
 }
 
 /// The unit sphere of a material under radiance 1 from everywhere.

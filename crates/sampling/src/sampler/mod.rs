@@ -1,5 +1,6 @@
 //! Samplers: from (seed, pixel, sample index, dimension) to numbers in `[0, 1)`.
 
+mod block;
 mod halton;
 mod kind;
 mod multi_jittered;
@@ -12,6 +13,7 @@ mod stratified;
 mod stratum;
 mod zsobol;
 
+pub use block::SampleRoom;
 pub use kind::{Mapped, SamplerKind};
 pub use plan::{Draw, SamplePlan};
 
@@ -21,6 +23,7 @@ use halton::{Halton, HaltonSample};
 use multi_jittered::{MultiJittered, MultiJitteredSample};
 use n_rooks::NRooksSample;
 use sobol::SobolSample;
+use std::ops::Range;
 use stratified::{Stratified, StratifiedSample};
 use tenfold_math::{UVec2, Vec2};
 
@@ -43,20 +46,25 @@ pub struct Sampler {
 }
 
 /// One sample of one pixel: asked for numbers by dimension. Cheap to copy.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug)]
 pub struct PixelSample<'a> {
     pixel: UVec2,
     index: u32,
-    /// Hash of the seed, the pixel and the index.
-    identity: u64,
+    /// Hash of the seed and the pixel.
+    pixel_seed: u64,
     pattern: Pattern<'a>,
 }
 
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug)]
 enum Pattern<'a> {
     Independent,
     Stratified(StratifiedSample),
     Sobol(SobolSample),
+    /// The sample at a place of a block of Sobol' points whose numbers are kept.
+    SobolBlock {
+        room: &'a SampleRoom,
+        place: u32,
+    },
     NRooks(NRooksSample),
     MultiJittered(MultiJitteredSample),
     Halton(HaltonSample),
@@ -114,12 +122,39 @@ impl Sampler {
         }
     }
 
+    /// Calls `take` with each of the samples `indices` of `pixel`, in order. They have the numbers of [`Sampler::at`]; those of
+    /// neighbours are computed together, in `room`, where the sampler can.
+    #[inline]
+    pub fn for_each(
+        &self,
+        pixel: UVec2,
+        mut indices: Range<u32>,
+        room: &mut SampleRoom,
+        mut take: impl FnMut(&PixelSample<'_>),
+    ) {
+        while indices.start < indices.end {
+            let first = self.at(pixel, indices.start);
+            indices.start += 1;
+            if let Pattern::Sobol(sobol) = first.pattern
+                && room.begin(sobol)
+            {
+                let rest = (sobol.block_size() - sobol.place()).min(indices.end + 1 - indices.start);
+                for i in 0..rest {
+                    let pattern = Pattern::SobolBlock { room, place: sobol.place() + i };
+                    take(&PixelSample { index: first.index + i, pattern, ..first });
+                }
+                indices.start += rest - 1;
+            } else {
+                take(&first);
+            }
+        }
+    }
+
     /// The sample with all variables drawn by `kind`.
     #[inline]
     fn by(&self, kind: SamplerKind, seed: u64, pixel: UVec2, index: u32) -> PixelSample<'_> {
         let position = u64::from(pixel.y) << 32 | u64::from(pixel.x);
         let pixel_seed = combine(seed, position);
-        let identity = combine(pixel_seed, u64::from(index));
         // The seed of the pixel's round and the index in it.
         let place = || {
             let (round, index) = self.round(index);
@@ -151,7 +186,7 @@ impl Sampler {
                 Pattern::Halton(self.halton.at(seed, index))
             }
         };
-        PixelSample { pixel, index, identity, pattern }
+        PixelSample { pixel, index, pixel_seed, pattern }
     }
 
     /// One variable of the sample, as the plan has it.
@@ -204,9 +239,26 @@ impl PixelSample<'_> {
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
         match &self.pattern {
+            Pattern::SobolBlock { room, place } => room.get(*place, dimension).x,
+            _ => self.compute_1d(dimension),
+        }
+    }
+
+    /// The two numbers of a dimension, each in `[0, 1)`.
+    #[inline]
+    pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
+        match &self.pattern {
+            Pattern::SobolBlock { room, place } => room.get(*place, dimension),
+            _ => self.compute_2d(dimension),
+        }
+    }
+
+    fn compute_1d(&self, dimension: Dimension) -> f32 {
+        match &self.pattern {
             Pattern::Independent => unit_f32(self.hash(dimension) as u32),
             Pattern::Stratified(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_1d(dimension.key()),
+            Pattern::SobolBlock { room, place } => room.get(*place, dimension).x,
             Pattern::NRooks(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_1d(dimension.key()),
@@ -217,9 +269,7 @@ impl PixelSample<'_> {
         }
     }
 
-    /// The two numbers of a dimension, each in `[0, 1)`.
-    #[inline]
-    pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
+    fn compute_2d(&self, dimension: Dimension) -> Vec2 {
         match &self.pattern {
             Pattern::Independent => {
                 let bits = self.hash(dimension);
@@ -227,6 +277,7 @@ impl PixelSample<'_> {
             }
             Pattern::Stratified(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_2d(dimension.key()),
+            Pattern::SobolBlock { room, place } => room.get(*place, dimension),
             Pattern::NRooks(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_2d(dimension.key(), self.hash(dimension)),
@@ -237,16 +288,22 @@ impl PixelSample<'_> {
         }
     }
 
+    /// Hash of the seed, the pixel and the index.
+    #[inline]
+    fn identity(&self) -> u64 {
+        combine(self.pixel_seed, u64::from(self.index))
+    }
+
     /// 64 random bits of a dimension, without any pattern over samples: to seed what needs many numbers.
     #[inline]
     pub fn hash(&self, dimension: Dimension) -> u64 {
         let identity = match &self.pattern {
             Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
-                Alone::Drawn(s) => s.identity,
+                Alone::Drawn(s) => s.identity(),
                 // Held walks are the same in all samples of all pixels.
                 Alone::Held(_) => 0,
             },
-            _ => self.identity,
+            _ => self.identity(),
         };
         combine(identity, u64::from(dimension.key()))
     }

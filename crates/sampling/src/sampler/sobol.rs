@@ -57,6 +57,54 @@ impl SobolSample {
         Self { seed, block_seed, mirrored, place, size, place_bits, shift: 32 - bits, digits }
     }
 
+    /// Samples that share a block with this one, itself among them.
+    #[inline]
+    pub(super) fn block_size(&self) -> u32 {
+        self.size
+    }
+
+    /// The place in the block.
+    #[inline]
+    pub(super) fn place(&self) -> u32 {
+        self.place
+    }
+
+    /// The same with another place in the block.
+    #[inline]
+    pub(super) fn at_place(&self, place: u32) -> Self {
+        Self { place, ..*self }
+    }
+
+    /// Whether the block has all its places taken.
+    #[inline]
+    pub(super) fn block_is_whole(&self) -> bool {
+        self.size == 1 << self.place_bits
+    }
+
+    /// The two numbers of the `LANES` samples at the places from `first` in a block that is whole: those of [`Self::get_2d`], to be
+    /// computed in the lanes of a vector. Places beyond the block's size get numbers without meaning.
+    #[inline(always)]
+    pub(super) fn get_lanes<const LANES: usize>(&self, key: u32, first: u32) -> [[f32; LANES]; 2] {
+        let h = combine(self.seed, u64::from(key));
+        let block_key = h ^ self.block_seed;
+        // Places are the lowest bits of the index, so the coordinates of the block and of the place add up (without carry).
+        let block = (shuffle(self.mirrored, h, self.digits) << self.shift).reverse_bits();
+        let (block_x, block_y) = (block as u32, second(block));
+        let number = |x: u32, seed: u32| {
+            let bits = scramble(x, seed).reverse_bits();
+            // As `unit_f32`, by way of a signed integer, for which more machines have an instruction.
+            (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
+        };
+        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+        for (place, (x, y)) in (first..).zip(x.iter_mut().zip(&mut y)) {
+            let place = scatter(place, self.place_bits, block_key);
+            let index = place.reverse_bits() >> (32 - self.place_bits);
+            *x = number(block_x ^ index, h as u32);
+            *y = number(block_y ^ second_of_few(index), (h >> 32) as u32);
+        }
+        [x, y]
+    }
+
     #[inline]
     pub(super) fn get_1d(&self, key: u32) -> f32 {
         let h = combine(self.seed, u64::from(key));
@@ -78,7 +126,7 @@ impl SobolSample {
     #[inline]
     fn point(&self, h: u64) -> u64 {
         let key = h ^ self.block_seed;
-        let point = if self.size == 1 << self.place_bits {
+        let point = if self.block_is_whole() {
             // All places of a whole block are taken, so they need not be nested in anything, nor be mirrored.
             let place = u64::from(scatter(self.place, self.place_bits, key));
             shuffle(self.mirrored, h, self.digits) ^ place << (64 - self.place_bits - self.shift)
@@ -150,6 +198,14 @@ fn second(index: u64) -> u32 {
     x ^ (x >> 1 & 0x5555_5555)
 }
 
+/// [`second`] of an index below 256.
+#[inline]
+fn second_of_few(x: u32) -> u32 {
+    let x = x ^ (x >> 4 & 0x0f);
+    let x = x ^ (x >> 2 & 0x33);
+    x ^ (x >> 1 & 0x55)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +222,7 @@ mod tests {
             column ^= column >> 1;
         }
         assert_eq!(second(0b1011), second(0b1000) ^ second(0b11));
+        (0..256).for_each(|x| assert_eq!(second_of_few(x), second(x.into())));
     }
 
     #[test]

@@ -19,13 +19,15 @@ pub(crate) fn dense_index(lambda: f32) -> Option<usize> {
 /// pbrt-v4 does; 0 outside.
 #[derive(Clone, PartialEq, Debug)]
 pub struct DenselySampled {
-    values: Arc<[f32; SAMPLES]>,
+    /// The values, and a 0 for all wavelengths outside.
+    values: Arc<[f32; SAMPLES + 1]>,
 }
 
 impl DenselySampled {
     /// Tabulates a function of the wavelength in nm.
     pub fn from_fn(mut f: impl FnMut(f32) -> f32) -> Self {
-        Self { values: Arc::new(std::array::from_fn(|i| f(LAMBDA_MIN + i as f32))) }
+        let value = |i| if i < SAMPLES { f(LAMBDA_MIN + i as f32) } else { 0.0 };
+        Self { values: Arc::new(std::array::from_fn(value)) }
     }
 
     /// Tabulates a spectrum.
@@ -47,12 +49,12 @@ impl DenselySampled {
     /// Values at the wavelengths of a path.
     #[inline]
     pub fn sample(&self, w: &SampledWavelengths) -> SampledSpectrum {
-        SampledSpectrum::from_fn(|i| self.eval(w.lambda[i]))
+        SampledSpectrum::new(w.nearest().map(|i| self.values[i]))
     }
 
     /// Largest value.
     pub fn max_value(&self) -> f32 {
-        self.values.iter().copied().fold(f32::MIN, f32::max)
+        self.values[..SAMPLES].iter().copied().fold(f32::MIN, f32::max)
     }
 }
 

@@ -112,7 +112,7 @@ mod tests {
                 let w = SampledWavelengths::sample_uniform(i as f32 / 4000.0);
                 let v = s.sample(&w);
                 for lane in 0..N {
-                    assert_eq!(v[lane], s.eval(w.lambda[lane]), "{s:?}");
+                    assert_eq!(v[lane], s.eval(w.lambda()[lane]), "{s:?}");
                 }
                 largest = largest.max(v.max_component());
             }

@@ -121,7 +121,7 @@ impl PiecewiseLinear {
     /// Values at the wavelengths of a path.
     #[inline]
     pub fn sample(&self, w: &SampledWavelengths) -> SampledSpectrum {
-        SampledSpectrum::from_fn(|i| self.eval(w.lambda[i]))
+        SampledSpectrum::new(w.lambda().map(|lambda| self.eval(lambda)))
     }
 
     /// Largest value of the points.
