@@ -126,6 +126,8 @@ pub struct Mesh<const N: usize> {
     /// Whether geometric normals are turned around against the order of the vertices: reversed orientation or a mirroring
     /// transform, but not both.
     pub(crate) flip: bool,
+    /// Whether every vertex is of one corner, in the order of the corners: indices say nothing then, and are not read.
+    is_separate: bool,
 }
 
 impl<const N: usize> Mesh<N> {
@@ -137,7 +139,35 @@ impl<const N: usize> Mesh<N> {
         parts.validate(N)?;
         let parts = parts.transformed(to_world, reverse_orientation);
         parts.check_finite()?;
-        Ok(Self { parts, flip: reverse_orientation ^ to_world.swaps_handedness() })
+        Ok(Self::of(parts, reverse_orientation ^ to_world.swaps_handedness()))
+    }
+
+    /// A mesh of valid parts in world space.
+    pub(crate) fn of(parts: MeshParts, flip: bool) -> Self {
+        let is_separate = parts.indices.iter().enumerate().all(|(corner, &vertex)| vertex as usize == corner);
+        Self { parts, flip, is_separate }
+    }
+
+    /// The same primitives with vertices of their own: for primitives that are looked up anywhere, in memory that is far away. `None` where they
+    /// have them.
+    #[must_use]
+    pub fn separated(&self) -> Option<Self> {
+        let parts = &self.parts;
+        if self.is_separate || u32::try_from(parts.indices.len()).is_err() {
+            return None;
+        }
+        fn each<T: Copy>(indices: &[u32], values: &[T]) -> Vec<T> {
+            indices.iter().map(|&vertex| values[vertex as usize]).collect()
+        }
+        let parts = MeshParts {
+            positions: each(&parts.indices, &parts.positions),
+            normals: parts.normals.as_ref().map(|n| each(&parts.indices, n)),
+            tangents: parts.tangents.as_ref().map(|s| each(&parts.indices, s)),
+            uvs: parts.uvs.as_ref().map(|uv| each(&parts.indices, uv)),
+            indices: (0..parts.indices.len() as u32).collect(),
+            face_indices: parts.face_indices.clone(),
+        };
+        Some(Self::of(parts, self.flip))
     }
 
     /// How many primitives there are.
@@ -161,6 +191,9 @@ impl<const N: usize> Mesh<N> {
     /// Vertex indices of a primitive.
     #[inline]
     pub fn corners(&self, primitive: usize) -> [usize; N] {
+        if self.is_separate {
+            return std::array::from_fn(|corner| N * primitive + corner);
+        }
         let indices = &self.parts.indices[N * primitive..N * (primitive + 1)];
         std::array::from_fn(|corner| indices[corner] as usize)
     }

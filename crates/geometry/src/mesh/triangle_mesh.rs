@@ -36,10 +36,7 @@ impl TriangleMesh {
         let positions = pairs.map(|i| rectangle(self.positions(i), self.positions(i + 1)));
         let positions = positions.collect::<Option<Vec<_>>>()?.into_flattened();
         let indices = (0..positions.len() as u32).collect();
-        Some(BilinearMesh {
-            parts: MeshParts { positions, indices, ..MeshParts::default() },
-            flip: self.flip,
-        })
+        Some(BilinearMesh::of(MeshParts { positions, indices, ..MeshParts::default() }, self.flip))
     }
 
     /// Whether no triangle has any area: no ray can hit them.
@@ -98,6 +95,15 @@ mod tests {
         let turned = mesh(&QUAD, &[0, 2, 1, 0, 3, 2]).rectangles().unwrap().positions(0);
         let normal = (turned[1] - turned[0]).cross(turned[2] - turned[0]);
         assert!(normal.y > 0.0, "the sense of the triangles is kept");
+    }
+
+    #[test]
+    fn triangles_with_vertices_of_their_own_are_the_same() {
+        let shared = mesh(&QUAD, &[2, 1, 0, 0, 2, 3]);
+        let separate = shared.separated().unwrap();
+        assert_eq!(separate.parts.positions.len(), 6);
+        (0..2).for_each(|i| assert_eq!(separate.positions(i), shared.positions(i)));
+        assert_eq!(separate.separated(), None);
     }
 
     #[test]

@@ -112,7 +112,7 @@ fn point(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform) -
     let intensity = emission(cx, p, entity, "I");
     let factor = normalisation(target(p, "power"), 4.0 * PI);
     let position = t.point(p.one_point3("from", Vec3::ZERO));
-    Some(Light::Point(PointLight { position, intensity: intensity?.scaled(factor) }))
+    Some(Light::from(PointLight { position, intensity: intensity?.scaled(factor) }))
 }
 
 fn spot(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform) -> Option<Light> {
@@ -138,7 +138,7 @@ fn spot(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform) ->
     let rotation =
         Mat4::from_cols(frame.x.extend(0.0), frame.y.extend(0.0), frame.z.extend(0.0), from.extend(1.0));
     let world_from_light = *t * Transform::from_mat4(rotation)?;
-    Some(Light::Spot(SpotLight::new(&world_from_light, intensity?.scaled(factor), start, end)))
+    Some(Light::from(SpotLight::new(&world_from_light, intensity?.scaled(factor), start, end)))
 }
 
 /// The unit vector between two points; that they are one is reported.
@@ -156,7 +156,7 @@ fn distant(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform)
     let factor = normalisation(target(p, "illuminance"), 1.0);
     let from = p.one_point3("from", Vec3::ZERO);
     let direction = t.vector(-direction(p, from, p.one_point3("to", Vec3::Z))?).try_normalize()?;
-    Some(Light::Distant(DistantLight { direction, irradiance: irradiance?.scaled(factor) }))
+    Some(Light::from(DistantLight { direction, irradiance: irradiance?.scaled(factor) }))
 }
 
 fn infinite(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform) -> Option<Light> {
@@ -169,7 +169,7 @@ fn infinite(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform
         // Illuminance on a surface below a sky of radiance 1.
         let factor = normalisation(illuminance, PI);
         let radiance = emission(cx, p, entity, "L")?.scaled(factor);
-        return Some(Light::Uniform(UniformInfinite { radiance }));
+        return Some(Light::from(UniformInfinite { radiance }));
     };
     if p.find("L").is_some() {
         p.error("L", "an infinite light has either \"L\" or \"filename\", not both");
@@ -184,7 +184,7 @@ fn infinite(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform
     let upper = 2.0 * PI * weighted_rgb(&image, |st| equal_area_square_to_sphere(st).z.max(0.0));
     let factor = normalisation(illuminance, space.luminance(upper));
     let scale = per_photometric(&white(space), scale? * factor);
-    Some(Light::Image(ImageInfinite::new(world_from_light, &image, space, scale)))
+    Some(Light::from(ImageInfinite::new(world_from_light, &image, space, scale)))
 }
 
 /// The rotation (or rotation and reflection) in a transform, whatever its uniform scale.
@@ -211,7 +211,7 @@ fn projection(cx: &mut Context<'_>, p: &Params<'_>, t: &Transform) -> Option<Lig
     let screen = Screen::new(image.width(), image.height(), fov.to_radians());
     let factor = normalisation(power, space.luminance(screen.measure(&image)));
     let scale = per_photometric(&white(space), scale? * factor);
-    Some(Light::Projection(ProjectionLight::new(t, screen, RadianceImage::new(&image, space), scale)))
+    Some(Light::from(ProjectionLight::new(t, screen, RadianceImage::new(&image, space), scale)))
 }
 
 fn goniometric(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transform) -> Option<Light> {
@@ -229,7 +229,7 @@ fn goniometric(cx: &mut Context<'_>, p: &Params<'_>, entity: &Entity, t: &Transf
     // The map's pole is the y axis of the light's space.
     let swap = Transform::from_mat4(Mat4::from_mat3(Mat3::from_cols(Vec3::X, Vec3::Z, Vec3::Y)))?;
     let intensity = intensity?.scaled(normalisation);
-    Some(Light::Goniometric(GoniometricLight::new(&(*t * swap), intensity, factors, side as usize)))
+    Some(Light::from(GoniometricLight::new(&(*t * swap), intensity, factors, side as usize)))
 }
 
 /// The image that a light names, fit to be one.

@@ -2,7 +2,7 @@
 
 use super::LightStrategy::{AsPoint, ByTexture, Complementary, SolidAngle, UniformArea};
 use super::area_image::AreaImage;
-use super::emitter::Emitter;
+use super::emitter::{Emitter, EmittingSurface};
 use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -19,40 +19,74 @@ pub enum AreaRadiance {
     Image(Arc<AreaImage>),
 }
 
-/// One primitive of a shape, emitting.
+/// What a primitive emits: `scale` times `radiance`.
 #[derive(Clone, Debug)]
-pub struct DiffuseAreaLight {
-    emitter: Emitter,
-    radiance: AreaRadiance,
-    scale: f32,
+pub struct AreaEmission {
+    /// The radiance.
+    pub radiance: AreaRadiance,
+    /// Its factor.
+    pub scale: f32,
+}
+
+/// A shape that emits: what the lights that are its primitives share.
+#[derive(Clone, Debug)]
+pub struct EmittingShape {
+    surface: EmittingSurface,
+    /// That of all primitives, or those of each.
+    emissions: Vec<AreaEmission>,
     two_sided: bool,
     /// Whether rays pass through it, so that light sampling alone can find it.
     invisible: bool,
 }
 
-impl DiffuseAreaLight {
-    /// A light over the primitive `primitive` of `shape`, of the given `radiance` times `scale`, on the side
-    /// of the geometric normal or on both.
-    pub fn new(
-        shape: Arc<Shape>,
-        primitive: usize,
-        radiance: AreaRadiance,
-        scale: f32,
-        two_sided: bool,
-    ) -> Self {
-        Self { emitter: Emitter::new(shape, primitive), radiance, scale, two_sided, invisible: false }
+impl EmittingShape {
+    /// With one of the `emissions` for all primitives or as many as there are primitives, on the side of the geometric normal or on
+    /// both.
+    pub fn new(shape: Shape, emissions: Vec<AreaEmission>, two_sided: bool) -> Self {
+        debug_assert!(emissions.len() == 1 || emissions.len() == shape.len());
+        Self { surface: EmittingSurface::new(shape), emissions, two_sided, invisible: false }
     }
 
-    /// The same light as a surface that no ray meets, for shapes whose alpha is 0 everywhere.
+    /// The same as a surface that no ray meets, for shapes whose alpha is 0 everywhere.
     #[must_use]
     pub fn invisible(self) -> Self {
         Self { invisible: true, ..self }
     }
+}
+
+/// One primitive of a shape, emitting.
+#[derive(Clone, Debug)]
+pub struct DiffuseAreaLight {
+    emitting: Arc<EmittingShape>,
+    primitive: u32,
+    /// As its shape says.
+    two_sided: bool,
+}
+
+impl DiffuseAreaLight {
+    /// The primitive `primitive` of `emitting`.
+    pub fn new(emitting: Arc<EmittingShape>, primitive: usize) -> Self {
+        Self { two_sided: emitting.two_sided, emitting, primitive: primitive as u32 }
+    }
+
+    #[inline]
+    fn emission(&self) -> &AreaEmission {
+        match &self.emitting.emissions[..] {
+            [shared] => shared,
+            each => &each[self.primitive as usize],
+        }
+    }
+
+    #[inline]
+    fn emitter(&self) -> Emitter<'_> {
+        self.emitting.surface.emitter(self.primitive as usize)
+    }
 
     /// Radiance averaged over the visible wavelengths and, for images, over the image.
     fn visible_mean(&self) -> f32 {
-        self.scale
-            * match &self.radiance {
+        let AreaEmission { radiance, scale } = self.emission();
+        scale
+            * match radiance {
                 AreaRadiance::Uniform(emission) => emission.visible_mean(),
                 AreaRadiance::Image(image) => image.radiance().visible_mean(),
             }
@@ -60,11 +94,11 @@ impl DiffuseAreaLight {
 
     #[cfg(test)]
     pub(super) fn primitive(&self) -> Primitive<'_> {
-        self.emitter.primitive()
+        self.emitter().primitive()
     }
 
     pub(super) fn bounds(&self) -> LightBounds {
-        let primitive = self.emitter.primitive();
+        let primitive = self.emitter().primitive();
         let (bounds, normals, area) = (primitive.bounds(), primitive.normal_cone(), primitive.area());
         // A convex surface that faces all ways shows a quarter of itself to each (Cauchy).
         let shown = if normals.cos_theta <= -1.0 { 0.25 * area } else { area };
@@ -103,11 +137,12 @@ impl DiffuseAreaLight {
         if !self.emits_toward(n, w) {
             return SampledSpectrum::ZERO;
         }
-        let value = match &self.radiance {
+        let AreaEmission { radiance, scale } = self.emission();
+        let value = match radiance {
             AreaRadiance::Uniform(emission) => emission.sample(wavelengths),
             AreaRadiance::Image(image) => image.at(uv, wavelengths),
         };
-        self.scale * value
+        *scale * value
     }
 
     #[inline]
@@ -118,8 +153,8 @@ impl DiffuseAreaLight {
         u: Vec2,
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
-        let emitter = &self.emitter;
-        let s = match (strategy, &self.radiance) {
+        let emitter = &self.emitter();
+        let s = match (strategy, &self.emission().radiance) {
             (ByTexture | Complementary, AreaRadiance::Image(image)) => image.sample_from(emitter, from, u)?,
             (ByTexture | Complementary | SolidAngle, _) => emitter.sample_from(from, u)?,
             (UniformArea, _) => emitter.primitive().sample_area_from(from, u)?,
@@ -142,15 +177,15 @@ impl DiffuseAreaLight {
             wi,
             target: ShadowTarget::from(&s),
             pdf: s.pdf,
-            delta: self.invisible,
+            delta: self.emitting.invisible,
         })
     }
 
     /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`; where it finds but one, any positive number.
     #[inline]
     pub(super) fn pdf(&self, strategy: LightStrategy, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
-        let emitter = &self.emitter;
-        match (strategy, &self.radiance) {
+        let emitter = &self.emitter();
+        match (strategy, &self.emission().radiance) {
             (ByTexture | Complementary, AreaRadiance::Image(image)) => image.pdf_from(emitter, from, point),
             (ByTexture | Complementary | SolidAngle, _) => emitter.pdf_from_point(from, point),
             (UniformArea | AsPoint, _) => emitter.primitive().pdf_area_from_point(from, point),

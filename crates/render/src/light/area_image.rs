@@ -114,7 +114,7 @@ impl AreaImage {
     #[inline]
     pub(super) fn sample_from(
         &self,
-        emitter: &Emitter,
+        emitter: &Emitter<'_>,
         from: &ReferencePoint,
         u: Vec2,
     ) -> Option<ShapeSample> {
@@ -145,7 +145,7 @@ impl AreaImage {
     }
 
     #[inline]
-    pub(super) fn pdf_from(&self, emitter: &Emitter, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
+    pub(super) fn pdf_from(&self, emitter: &Emitter<'_>, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
         match &self.brightness {
             Some(b) => b.pdf_from(b.probability(from), emitter, from, point),
             None => emitter.pdf_from_point(from, point),
@@ -178,7 +178,13 @@ impl Brightness {
     }
 
     #[inline]
-    fn pdf_from(&self, by_image: f32, emitter: &Emitter, from: &ReferencePoint, point: &SurfacePoint) -> f32 {
+    fn pdf_from(
+        &self,
+        by_image: f32,
+        emitter: &Emitter<'_>,
+        from: &ReferencePoint,
+        point: &SurfacePoint,
+    ) -> f32 {
         by_image * self.pdf_by_image(from, point) + (1.0 - by_image) * emitter.pdf_from_point(from, point)
     }
 }

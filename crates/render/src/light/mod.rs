@@ -23,7 +23,7 @@ mod uniform;
 #[cfg(test)]
 mod tests;
 
-pub use area::{AreaRadiance, DiffuseAreaLight};
+pub use area::{AreaEmission, AreaRadiance, DiffuseAreaLight, EmittingShape};
 pub use area_image::AreaImage;
 pub use choice::LightBounds;
 pub use distant::DistantLight;
@@ -44,26 +44,43 @@ use tenfold_geometry::{ReferencePoint, SHADOW_T_MAX, ShapeSample, ray_between};
 use tenfold_math::{Ray, Vec2, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 
-/// A source of light.
+/// A source of light. Many are primitives of shapes, in 16 bytes: paths find them by chance, each in memory of its own.
 #[derive(Clone, Debug)]
 pub enum Light {
     /// Evenly from a point.
-    Point(PointLight),
+    Point(Box<PointLight>),
     /// From a point into a cone.
-    Spot(SpotLight),
+    Spot(Box<SpotLight>),
     /// From one direction.
-    Distant(DistantLight),
+    Distant(Box<DistantLight>),
     /// From a point, an image.
-    Projection(ProjectionLight),
+    Projection(Box<ProjectionLight>),
     /// From a point, by measured intensities.
-    Goniometric(GoniometricLight),
+    Goniometric(Box<GoniometricLight>),
     /// From one primitive of a shape.
     Area(DiffuseAreaLight),
     /// Evenly from all directions.
-    Uniform(UniformInfinite),
+    Uniform(Box<UniformInfinite>),
     /// From all directions, by an image.
-    Image(ImageInfinite),
+    Image(Box<ImageInfinite>),
 }
+
+const _: () = assert!(size_of::<Light>() <= 16);
+
+macro_rules! into_light {
+    ($($kind:ident: $light:ty),*) => {
+        $(impl From<$light> for Light {
+            fn from(light: $light) -> Self {
+                Self::$kind(Box::new(light))
+            }
+        })*
+    };
+}
+
+into_light!(
+    Point: PointLight, Spot: SpotLight, Distant: DistantLight, Projection: ProjectionLight,
+    Goniometric: GoniometricLight, Uniform: UniformInfinite, Image: ImageInfinite
+);
 
 /// Light that may reach a point, if nothing is in the way.
 #[derive(Copy, Clone, Debug)]

@@ -2,7 +2,10 @@
 
 use super::{emission, image, image_space, normalisation, per_photometric, scale, target, white};
 use crate::compile::context::{Context, color_space};
-use crate::light::{AreaImage, AreaRadiance, DiffuseAreaLight, Emission, Light, RadianceImage, mean_rgb};
+use crate::light::{
+    AreaEmission, AreaImage, AreaRadiance, DiffuseAreaLight, Emission, EmittingShape, Light, RadianceImage,
+    mean_rgb,
+};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::f32::consts::PI;
@@ -90,28 +93,47 @@ impl AreaEmitter {
     /// triangles are rectangles that emit evenly. Rays do not meet an `invisible` shape. As in pbrt-v4, `power` is that of each
     /// primitive.
     pub(crate) fn lights(&self, shape: &Shape, invisible: bool) -> (Vec<Light>, u32) {
-        let all = |shape: Arc<Shape>| {
-            (0..shape.len()).map(|i| Light::Area(self.light(&shape, i, invisible))).collect()
-        };
         if let (Content::Uniform(_), None, Shape::Triangles(mesh)) = (&self.content, self.power, shape)
             && let Some(rectangles) = mesh.rectangles()
         {
-            return (all(Arc::new(Shape::Patches(Arc::new(rectangles)))), 2);
+            return (self.of_each(Shape::Patches(Arc::new(rectangles)), invisible), 2);
         }
-        (all(Arc::new(shape.clone())), 1)
+        // Every light is found by chance: one look at its vertices is less than one at its indices and one at each vertex.
+        let separate = match shape {
+            Shape::Triangles(mesh) => mesh.separated().map(|mesh| Shape::Triangles(Arc::new(mesh))),
+            Shape::Patches(mesh) => mesh.separated().map(|mesh| Shape::Patches(Arc::new(mesh))),
+            Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => None,
+        };
+        (self.of_each(separate.unwrap_or_else(|| shape.clone()), invisible), 1)
     }
 
-    fn light(&self, shape: &Arc<Shape>, i: usize, invisible: bool) -> DiffuseAreaLight {
-        let (radiance, luminance) = match &self.content {
-            Content::Uniform(emission) => (AreaRadiance::Uniform(emission.clone()), 1.0),
-            Content::Image(content) => {
-                (AreaRadiance::Image(Arc::new(content.on(shape, i))), content.luminance)
+    fn of_each(&self, shape: Shape, invisible: bool) -> Vec<Light> {
+        let count = shape.len();
+        let emissions = match (&self.content, self.power) {
+            (Content::Uniform(emission), None) => {
+                vec![AreaEmission { radiance: AreaRadiance::Uniform(emission.clone()), scale: self.scale }]
             }
+            (content, power) => (0..count)
+                .map(|i| {
+                    let (radiance, luminance) = content.on(&shape, i);
+                    let sides = if self.two_sided { 2.0 } else { 1.0 };
+                    let found = luminance * sides * PI * shape.primitive(i).area();
+                    AreaEmission { radiance, scale: self.scale * normalisation(power, found) }
+                })
+                .collect(),
         };
-        let sides = if self.two_sided { 2.0 } else { 1.0 };
-        let found = luminance * sides * PI * shape.primitive(i).area();
-        let scale = self.scale * normalisation(self.power, found);
-        let light = DiffuseAreaLight::new(shape.clone(), i, radiance, scale, self.two_sided);
-        if invisible { light.invisible() } else { light }
+        let emitting = EmittingShape::new(shape, emissions, self.two_sided);
+        let emitting = Arc::new(if invisible { emitting.invisible() } else { emitting });
+        (0..count).map(|i| Light::Area(DiffuseAreaLight::new(emitting.clone(), i))).collect()
+    }
+}
+
+impl Content {
+    /// What the primitive `i` of `shape` emits, and its mean luminance.
+    fn on(&self, shape: &Shape, i: usize) -> (AreaRadiance, f32) {
+        match self {
+            Self::Uniform(emission) => (AreaRadiance::Uniform(emission.clone()), 1.0),
+            Self::Image(content) => (AreaRadiance::Image(Arc::new(content.on(shape, i))), content.luminance),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The choice of a light: near, bright ones that face the point in question more often.
 
 mod bounds;
+mod clusters;
 mod cone;
 mod split;
 mod tree;

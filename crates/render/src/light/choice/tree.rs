@@ -2,25 +2,27 @@
 //! send more light to the point in question (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights
 //! with Adaptive Tree Splitting"), here with up to [`LANES`] children to a node, weighed all at once.
 
-use super::bounds::{Clusters, LANES, LightBounds};
+use super::bounds::LightBounds;
+use super::clusters::{Clusters, LANES};
 use super::split::split;
 use tenfold_geometry::ReferencePoint;
 use tenfold_math::ONE_MINUS_EPSILON;
 
-/// Depth from which groups are halved: no light is then deeper than a trail is long.
+/// Depth from which groups are halved, so that no light is very deep.
 const HALVE_FROM: usize = 10;
-/// Bits of a trail for each level.
-const LANE_BITS: usize = 3;
 /// Most lights a tree holds.
 pub(crate) const MAX_LIGHTS: usize = 1 << 27;
 
-/// Up to [`LANES`] clusters and what is in them: a node each, or a light.
+/// Up to [`LANES`] clusters and what is in them: a node each, or a light. Three cache lines.
 #[derive(Copy, Clone, Debug)]
+#[repr(C, align(64))]
 struct Node {
     clusters: Clusters,
     /// Index of a node, or with the bit `LIGHT` of a light.
     links: [u32; LANES],
 }
+
+const _: () = assert!(size_of::<Node>() == 192);
 
 const LIGHT: u32 = 1 << 31;
 const EMPTY: Node = Node { clusters: Clusters::EMPTY, links: [0; LANES] };
@@ -45,52 +47,72 @@ pub(in crate::light) struct TreeSample {
 #[derive(Clone, Debug, Default)]
 pub(in crate::light) struct LightTree {
     nodes: Vec<Node>,
-    /// Per light: which lanes lead to it from the root, [`LANE_BITS`] a level from the lowest; or `NOWHERE`.
-    trails: Vec<u64>,
+    /// Per node: where its parent has it.
+    parents: Vec<Place>,
+    /// Per light: where it is.
+    places: Vec<Place>,
     /// The light, where there is but one.
     only: Option<u32>,
 }
 
-const NOWHERE: u64 = u64::MAX;
+/// A lane of a node.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Place(u32);
+
+impl Place {
+    const NOWHERE: Self = Self(u32::MAX);
+
+    fn new(node: usize, lane: usize) -> Self {
+        Self((node * LANES + lane) as u32)
+    }
+
+    #[inline(always)]
+    fn node(self) -> usize {
+        self.0 as usize / LANES
+    }
+
+    #[inline(always)]
+    fn lane(self) -> usize {
+        self.0 as usize % LANES
+    }
+}
 
 impl LightTree {
     /// A tree over `entries`, whose lights have indices below `lights`. Takes O(n log n); `entries` are reordered.
     pub(in crate::light) fn build(entries: &mut [Entry], lights: usize) -> Self {
         let only = if let [entry] = entries { Some(entry.light) } else { None };
-        let mut tree = Self { nodes: Vec::new(), trails: vec![NOWHERE; lights], only };
+        let mut tree = Self { places: vec![Place::NOWHERE; lights], only, ..Self::default() };
         if !entries.is_empty() {
-            tree.nodes.push(EMPTY);
-            tree.fill(0, entries, 0, 0);
+            tree.fill(Place::NOWHERE, entries, 0);
         }
         tree
     }
 
-    /// Builds the subtree over `entries` at node `at` and returns its bounds.
-    fn fill(&mut self, at: usize, entries: &mut [Entry], trail: u64, depth: usize) -> LightBounds {
+    /// Builds the subtree over `entries`, to be had by `parent`, and returns its bounds.
+    fn fill(&mut self, parent: Place, entries: &mut [Entry], depth: usize) -> LightBounds {
+        let at = self.nodes.len();
+        self.nodes.push(EMPTY);
+        self.parents.push(parent);
         let cuts = cut(entries, depth < HALVE_FROM);
-        let mut whole: Option<LightBounds> = None;
+        let (mut all, mut links) = (Vec::with_capacity(LANES), [0; LANES]);
         for (lane, ends) in cuts.windows(2).enumerate() {
-            let group = &mut entries[ends[0]..ends[1]];
-            let trail = trail | (lane as u64) << (LANE_BITS * depth);
-            let bounds = if let [entry] = group {
-                self.trails[entry.light as usize] = trail;
-                self.nodes[at].links[lane] = LIGHT | entry.light;
-                entry.bounds
+            let (group, place) = (&mut entries[ends[0]..ends[1]], Place::new(at, lane));
+            if let [entry] = group {
+                self.places[entry.light as usize] = place;
+                links[lane] = LIGHT | entry.light;
+                all.push(entry.bounds);
             } else {
-                let child = self.nodes.len();
-                self.nodes.push(EMPTY);
-                self.nodes[at].links[lane] = child as u32;
-                self.fill(child, group, trail, depth + 1)
-            };
-            self.nodes[at].clusters.set(lane, &bounds);
-            whole = Some(whole.map_or(bounds, |w| w.union(bounds)));
+                links[lane] = self.nodes.len() as u32;
+                all.push(self.fill(place, group, depth + 1));
+            }
         }
-        whole.unwrap_or(entries[0].bounds)
+        self.nodes[at] = Node { clusters: Clusters::new(&all), links };
+        all.into_iter().reduce(LightBounds::union).unwrap_or(entries[0].bounds)
     }
 
     /// Whether `light` is in the tree.
     pub(in crate::light) fn contains(&self, light: usize) -> bool {
-        self.trails[light] != NOWHERE
+        self.places[light] != Place::NOWHERE
     }
 
     /// An estimate of the irradiance from all lights at `from`, see [`Clusters::importance`].
@@ -109,56 +131,49 @@ impl LightTree {
         let mut pmf = 1.0;
         loop {
             let weights = node.clusters.importance(from);
-            let total: f32 = weights.iter().sum();
-            let mut rest = u * total;
-            // The last lane of positive weight takes what rounding leaves over.
-            let mut chosen = None;
-            for (i, &w) in weights.iter().enumerate() {
-                if w > 0.0 {
-                    chosen = Some((i, rest));
-                    if rest < w {
-                        break;
-                    }
-                    rest -= w;
-                }
+            // How many lanes' sums, up to each, `x` is not below: without branches, which would go wrong as often as not.
+            let (mut sums, mut total) = ([0.0; LANES], 0.0);
+            for (sum, weight) in sums.iter_mut().zip(weights) {
+                total += weight;
+                *sum = total;
             }
-            let (lane, rest) = chosen?;
-            pmf *= weights[lane] / total;
+            let x = u * total;
+            let below = sums.iter().filter(|&&sum| sum <= x).count();
+            // The last lane of positive weight takes what rounding leaves over.
+            let lane = if below < LANES { below } else { weights.iter().rposition(|&w| w > 0.0)? };
+            let weight = weights[lane];
+            pmf *= weight / total;
             let link = node.links[lane];
             if link & LIGHT != 0 {
                 return Some(TreeSample { light: link & !LIGHT, pmf });
             }
-            u = (rest / weights[lane]).min(ONE_MINUS_EPSILON);
+            u = ((x - (sums[lane] - weight)) / weight).clamp(0.0, ONE_MINUS_EPSILON);
             node = &self.nodes[link as usize];
         }
     }
 
     /// The probability with which [`LightTree::sample`] draws `light`.
+    // From the light up: where the nodes are is known before what is in them, so they are loaded side by side.
     #[inline]
     pub(in crate::light) fn pmf(&self, from: &ReferencePoint, light: usize) -> f32 {
-        let mut trail = self.trails[light];
-        if trail == NOWHERE {
+        let mut place = self.places[light];
+        if place == Place::NOWHERE {
             return 0.0;
         }
         if self.only.is_some() {
             return 1.0;
         }
-        let mut node = &self.nodes[0];
         let mut pmf = 1.0;
-        loop {
-            let weights = node.clusters.importance(from);
-            let lane = trail as usize % LANES;
-            trail >>= LANE_BITS;
-            if weights[lane] <= 0.0 {
+        while place != Place::NOWHERE {
+            let weights = self.nodes[place.node()].clusters.importance(from);
+            let weight = weights[place.lane()];
+            if weight <= 0.0 {
                 return 0.0;
             }
-            pmf *= weights[lane] / weights.iter().sum::<f32>();
-            let link = node.links[lane];
-            if link & LIGHT != 0 {
-                return pmf;
-            }
-            node = &self.nodes[link as usize];
+            pmf *= weight / weights.iter().sum::<f32>();
+            place = self.parents[place.node()];
         }
+        pmf
     }
 }
 

@@ -15,11 +15,11 @@ fn many(count: usize, seed: u64) -> Vec<Light> {
         let p = 20.0 * rng.vec3() - Vec3::splat(10.0);
         let strength = 0.1 * ops::powf(10f32, 3.0 * rng.f32());
         match i % 4 {
-            0 => lights.push(Light::Point(PointLight { position: p, intensity: constant(strength) })),
+            0 => lights.push(Light::from(PointLight { position: p, intensity: constant(strength) })),
             1 => {
                 let t =
                     Transform::translate(p) * Transform::rotate(3.0 * rng.f32(), rng.direction()).unwrap();
-                lights.push(Light::Spot(SpotLight::new(&t, constant(strength), 0.4, 0.7)));
+                lights.push(Light::from(SpotLight::new(&t, constant(strength), 0.4, 0.7)));
             }
             2 => {
                 let (a, b) = (0.3 * rng.direction(), 0.3 * rng.direction());
@@ -51,13 +51,13 @@ fn probabilities_of_all_lights_sum_to_one() {
     for count in [1, 2, 8, 9, 30, 1000] {
         let point = |_| {
             let position = rng.vec3();
-            Light::Point(PointLight { position, intensity: constant(0.01 + rng.f32()) })
+            Light::from(PointLight { position, intensity: constant(0.01 + rng.f32()) })
         };
         let mut all: Vec<_> = (0..count).map(point).collect();
         for sky in [false, true] {
             if sky {
-                all.push(Light::Uniform(UniformInfinite { radiance: constant(0.2) }));
-                all.push(Light::Distant(DistantLight { direction: Vec3::X, irradiance: constant(2.0) }));
+                all.push(Light::from(UniformInfinite { radiance: constant(0.2) }));
+                all.push(Light::from(DistantLight { direction: Vec3::X, irradiance: constant(2.0) }));
             }
             let lights = Lights::build(all.clone());
             for from in points() {
@@ -72,8 +72,8 @@ fn probabilities_of_all_lights_sum_to_one() {
 #[test]
 fn lights_are_chosen_as_often_as_their_probability() {
     let mut all = many(300, 4);
-    all.push(Light::Uniform(UniformInfinite { radiance: constant(0.5) }));
-    all.push(Light::Distant(DistantLight { direction: Vec3::Y, irradiance: constant(0.7) }));
+    all.push(Light::from(UniformInfinite { radiance: constant(0.5) }));
+    all.push(Light::from(DistantLight { direction: Vec3::Y, irradiance: constant(0.7) }));
     let lights = Lights::build(all);
     let samples = 200_000;
     let [flat, inclined, ..] = points();
@@ -103,12 +103,12 @@ fn lights_are_chosen_as_often_as_their_probability() {
 #[test]
 fn opaque_surfaces_have_no_use_for_lights_behind_them() {
     let lamp =
-        |z: f32| Light::Point(PointLight { position: Vec3::new(0.3, 0.2, z), intensity: constant(1.0) });
+        |z: f32| Light::from(PointLight { position: Vec3::new(0.3, 0.2, z), intensity: constant(1.0) });
     let lights = Lights::build(vec![
         lamp(1.0),
         lamp(-1.0),
-        Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, 0.8), irradiance: constant(0.1) }),
-        Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, -0.8), irradiance: constant(0.1) }),
+        Light::from(DistantLight { direction: Vec3::new(0.6, 0.0, 0.8), irradiance: constant(0.1) }),
+        Light::from(DistantLight { direction: Vec3::new(0.6, 0.0, -0.8), irradiance: constant(0.1) }),
     ]);
     let from = surface(Vec3::ZERO, Vec3::Z);
     let pmfs = |from: &ReferencePoint| [0, 1, 2, 3].map(|i| lights.pmf(ByTexture, from, Id::new(i)));
@@ -125,10 +125,10 @@ fn even_skies_are_left_to_scattering() {
     let others = || {
         let distant = DistantLight { direction: Vec3::Y, irradiance: constant(0.7) };
         let mut all = many(20, 6);
-        all.extend([Light::Distant(distant), image_sky()]);
+        all.extend([Light::from(distant), image_sky()]);
         all
     };
-    let sky = Light::Uniform(UniformInfinite { radiance: constant(3.0) });
+    let sky = Light::from(UniformInfinite { radiance: constant(3.0) });
     let with = Lights::build([vec![sky.clone()], others()].concat());
     let without = Lights::build(others());
     for from in points() {
@@ -189,13 +189,13 @@ fn the_total_of_a_thousand_lights_is_unbiased_and_less_noisy() {
 
 #[test]
 fn lights_without_light_are_never_chosen() {
-    let dark = Light::Point(PointLight { position: Vec3::X, intensity: constant(0.0) });
+    let dark = Light::from(PointLight { position: Vec3::X, intensity: constant(0.0) });
     let mut all = vec![dark.clone(); 20];
     all.extend(area(sphere(Vec3::Y, 0.5), 0.0, false));
-    all.push(Light::Uniform(UniformInfinite { radiance: constant(0.0) }));
+    all.push(Light::from(UniformInfinite { radiance: constant(0.0) }));
     let lights = Lights::build(all.clone());
     assert!(lights.sample(ByTexture, &points()[0], 0.5, Vec2::ZERO, &wavelengths()).is_none());
-    all.push(Light::Point(PointLight { position: Vec3::Z, intensity: constant(1.0) }));
+    all.push(Light::from(PointLight { position: Vec3::Z, intensity: constant(1.0) }));
     let lights = Lights::build(all);
     let id = Id::new(lights.len() - 1);
     assert_eq!(lights.pmf(ByTexture, &points()[0], id), 1.0);
@@ -209,7 +209,7 @@ fn lights_without_light_are_never_chosen() {
 #[test]
 fn degenerate_and_large_sets_build() {
     let at = |f: &dyn Fn(usize) -> Vec3, n: usize| {
-        let light = |i| Light::Point(PointLight { position: f(i), intensity: constant(1.0) });
+        let light = |i| Light::from(PointLight { position: f(i), intensity: constant(1.0) });
         Lights::build((0..n).map(light).collect())
     };
     let from = points()[0];

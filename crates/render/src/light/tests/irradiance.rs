@@ -35,11 +35,11 @@ fn exact(light: Light, from: &ReferencePoint) -> f32 {
 fn points_spots_and_distant_lights() {
     let from = surface(Vec3::new(1.0, 0.0, 0.0), Vec3::Z);
     let position = Vec3::new(1.0, 3.0, 4.0);
-    let point = Light::Point(PointLight { position, intensity: constant(5.0) });
+    let point = Light::from(PointLight { position, intensity: constant(5.0) });
     assert!((exact(point, &from) - 5.0 / 25.0 * 0.8).abs() < 1e-6);
 
     let distant =
-        Light::Distant(DistantLight { direction: Vec3::new(0.6, 0.0, 0.8), irradiance: constant(2.0) });
+        Light::from(DistantLight { direction: Vec3::new(0.6, 0.0, 0.8), irradiance: constant(2.0) });
     assert!((exact(distant, &from) - 1.6).abs() < 1e-6);
 
     // A spot at height 2 that looks down: seen under θ from its axis, E = I(θ) cos θ / (2 / cos θ)².
@@ -47,14 +47,14 @@ fn points_spots_and_distant_lights() {
     let (start, end) = (0.3f32, 0.6f32);
     for (theta, share) in [(0.0, 1.0), (0.29, 1.0), (0.61, 0.0), (1.0, 0.0)] {
         let from = surface(Vec3::new(2.0 * ops::tan(theta), 0.0, 0.0), Vec3::Z);
-        let spot = Light::Spot(SpotLight::new(&down, constant(3.0), start, end));
+        let spot = Light::from(SpotLight::new(&down, constant(3.0), start, end));
         let expected = 3.0 * share * ops::cos(theta).powi(3) / 4.0;
         assert!((exact(spot, &from) - expected).abs() < 1e-5, "{theta}");
     }
     // Half way between the cosines the step is one half.
     let theta = ops::acos(0.5 * (ops::cos(start) + ops::cos(end)));
     let from = surface(Vec3::new(0.0, 2.0 * ops::tan(theta), 0.0), Vec3::Z);
-    let spot = Light::Spot(SpotLight::new(&down, constant(3.0), start, end));
+    let spot = Light::from(SpotLight::new(&down, constant(3.0), start, end));
     assert!((exact(spot, &from) - 1.5 * ops::cos(theta).powi(3) / 4.0).abs() < 1e-5);
 }
 
@@ -77,18 +77,18 @@ fn power_of_lights_at_a_point() {
     };
     let near = |a: f32, b: f32, tolerance: f32| assert!((a / b - 1.0).abs() < tolerance, "{a} {b}");
     let t = Transform::rotate(0.4, Vec3::new(1.0, 1.0, 0.0)).unwrap();
-    near(power(Light::Spot(SpotLight::new(&t, constant(1.0), 0.5, 0.9))), SpotLight::measure(0.5, 0.9), 1e-3);
+    near(power(Light::from(SpotLight::new(&t, constant(1.0), 0.5, 0.9))), SpotLight::measure(0.5, 0.9), 1e-3);
 
     let image = Image::from_fn(6, 4, ["R", "G", "B"], |x, y| [(1 + x * y) as f32; 3]).unwrap();
     let screen = Screen::new(6, 4, 1.2);
     let radiance = RadianceImage::new(&image, RgbColorSpace::srgb());
     let white = RgbColorSpace::srgb().illuminant().eval(550.0);
-    let projection = Light::Projection(ProjectionLight::new(&t, screen, radiance, 2.0));
+    let projection = Light::from(ProjectionLight::new(&t, screen, radiance, 2.0));
     near(power(projection), 2.0 * white * screen.measure(&image).x, 1e-2);
 
     let factors: Vec<f32> = (0..64).map(|i| (i % 7) as f32).collect();
     let mean = factors.iter().sum::<f32>() / 64.0;
-    let goniometric = Light::Goniometric(GoniometricLight::new(&t, constant(1.5), factors, 8));
+    let goniometric = Light::from(GoniometricLight::new(&t, constant(1.5), factors, 8));
     near(power(goniometric), 1.5 * mean * 4.0 * PI, 1e-2);
 }
 
@@ -177,7 +177,7 @@ fn a_tube_has_the_irradiance_of_its_outline() {
 #[test]
 fn skies_light_what_lies_below_them() {
     let from = surface(Vec3::ZERO, Vec3::new(0.6, 0.0, -0.8));
-    check("uniform", vec![Light::Uniform(UniformInfinite { radiance: constant(2.0) })], &from, 2.0 * PI, 11);
+    check("uniform", vec![Light::from(UniformInfinite { radiance: constant(2.0) })], &from, 2.0 * PI, 11);
 
     let lights = Lights::build(vec![image_sky()]);
     // The sum over many directions of the map, which the pixels divide evenly.

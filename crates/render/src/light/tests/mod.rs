@@ -31,10 +31,10 @@ fn surface(p: Vec3, n: Vec3) -> ReferencePoint {
 }
 
 fn area(shape: Shape, radiance: f32, two_sided: bool) -> Vec<Light> {
-    let shape = Arc::new(shape);
-    let radiance = AreaRadiance::Uniform(constant(radiance));
-    let light = |i| DiffuseAreaLight::new(shape.clone(), i, radiance.clone(), 1.0, two_sided);
-    (0..shape.len()).map(|i| Light::Area(light(i))).collect()
+    let (count, radiance) = (shape.len(), AreaRadiance::Uniform(constant(radiance)));
+    let emitting =
+        Arc::new(EmittingShape::new(shape, vec![AreaEmission { radiance, scale: 1.0 }], two_sided));
+    (0..count).map(|i| Light::Area(DiffuseAreaLight::new(emitting.clone(), i))).collect()
 }
 
 fn sphere(centre: Vec3, radius: f32) -> Shape {
@@ -91,7 +91,9 @@ fn textured(shape: Shape) -> Light {
     let radiance = Arc::new(RadianceImage::new(&image, RgbColorSpace::srgb()));
     let distribution = AreaImage::corners(&shape, 0).and_then(|c| AreaImage::distribution(&image, &c));
     let image = AreaImage::new(radiance, distribution.map(Arc::new), &shape, 0);
-    Light::Area(DiffuseAreaLight::new(Arc::new(shape), 0, AreaRadiance::Image(Arc::new(image)), 1.0, false))
+    let radiance = AreaRadiance::Image(Arc::new(image));
+    let emitting = EmittingShape::new(shape, vec![AreaEmission { radiance, scale: 1.0 }], false);
+    Light::Area(DiffuseAreaLight::new(Arc::new(emitting), 0))
 }
 
 /// A sky of random pixels with a sun.
@@ -107,7 +109,7 @@ fn image_sky() -> Light {
     let turn = Transform::rotate(0.8, Vec3::new(1.0, 2.0, -0.5)).unwrap();
     let axis = |v| turn.vector(v);
     let rotation = tenfold_math::Mat3::from_cols(axis(Vec3::X), axis(Vec3::Y), -axis(Vec3::Z));
-    Light::Image(ImageInfinite::new(rotation, &sky(), RgbColorSpace::srgb(), 0.5))
+    Light::from(ImageInfinite::new(rotation, &sky(), RgbColorSpace::srgb(), 0.5))
 }
 
 /// Where a ray from `from` toward `wi` first meets the area light `light`.

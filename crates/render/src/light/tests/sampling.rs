@@ -78,7 +78,7 @@ fn images_on_area_lights_too() {
 
 #[test]
 fn skies_have_the_density_of_their_samples() {
-    let uniform = Light::Uniform(UniformInfinite { radiance: constant(1.0) });
+    let uniform = Light::from(UniformInfinite { radiance: constant(1.0) });
     for (i, light) in [uniform, image_sky()].into_iter().enumerate() {
         let lights = Lights::build(vec![light]);
         let [flat, inclined, free] = references();
@@ -95,7 +95,7 @@ fn skies_have_the_density_of_their_samples() {
 fn mixed_scenes_have_the_density_of_their_samples() {
     let mut all = area(sphere(Vec3::new(0.2, -0.1, 1.2), 0.4), 20.0, false);
     all.extend(area(triangles(&ceiling(), &[0, 1, 2, 2, 1, 3]).clone(), 1.0, true));
-    all.push(Light::Uniform(UniformInfinite { radiance: constant(0.3) }));
+    all.push(Light::from(UniformInfinite { radiance: constant(0.3) }));
     all.push(image_sky());
     let lights = Lights::build(all);
     for (i, from) in references().iter().enumerate() {
