@@ -17,10 +17,9 @@ use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 pub struct Lights {
     all: Vec<Light>,
     tree: LightTree,
-    /// Even skies last.
     far: Vec<FarLight>,
-    /// How many of `far` are no even skies.
-    uneven: usize,
+    /// The same without what comes from all directions alike.
+    uneven: Vec<FarLight>,
     skies: Vec<Id<Light>>,
 }
 
@@ -44,14 +43,19 @@ impl FarLight {
 }
 
 /// The chances of the candidates beside each other: one for the tree, if it has any light to offer, and one
-/// for each far light that has. Half of the probability goes to them evenly, so that one that only seems
-/// faint (because the others are hidden) still gets its share, and half in proportion to their importance.
+/// for each far light that has. A quarter of the probability goes to them evenly, so that one that only seems
+/// faint (because the others are hidden) still gets its share, and the rest in proportion to their importance.
 #[derive(Copy, Clone, Debug)]
 struct Candidates {
     tree: f32,
     total: f32,
     count: f32,
 }
+
+/// What part of the probability candidates get evenly.
+const EVENLY: f32 = 0.25;
+/// Skies are even where less of their light than this is above the mean: rounding, perhaps.
+const LEAST_UNEVEN: f32 = 0.01;
 
 impl Candidates {
     /// Probability of a candidate of this importance.
@@ -63,7 +67,7 @@ impl Candidates {
         if self.count == 1.0 {
             return 1.0;
         }
-        0.5 / self.count + 0.5 * (importance / self.total)
+        EVENLY / self.count + (1.0 - EVENLY) * (importance / self.total)
     }
 }
 
@@ -77,22 +81,23 @@ impl Lights {
     /// Prepares the choice among `lights`, whose ids are their indices. Takes O(n log n). Lights beyond 2²⁷
     /// are never sampled.
     pub fn build(lights: Vec<Light>) -> Self {
-        let (mut entries, mut far) = (Vec::new(), Vec::new());
+        let (mut entries, mut far, mut uneven) = (Vec::new(), Vec::new(), Vec::new());
         for (i, light) in lights.iter().enumerate().take(MAX_LIGHTS) {
             match light.role() {
                 Role::Local(bounds) if bounds.intensity > 0.0 => {
                     entries.push(Entry { bounds, light: i as u32 });
                 }
-                Role::Far { irradiance, direction } if irradiance > 0.0 => {
-                    far.push(FarLight { light: i as u32, irradiance, direction });
+                Role::Far { irradiance, direction, uneven: share } if irradiance > 0.0 => {
+                    let whole = FarLight { light: i as u32, irradiance, direction };
+                    far.push(whole);
+                    if share >= LEAST_UNEVEN {
+                        uneven.push(FarLight { irradiance: share * irradiance, ..whole });
+                    }
                 }
                 Role::Local(_) | Role::Far { .. } => {}
             }
         }
         let tree = LightTree::build(&mut entries, lights.len());
-        let is_even = |far: &FarLight| matches!(lights[far.light as usize], Light::Uniform(_));
-        far.sort_by_key(is_even);
-        let uneven = far.partition_point(|far| !is_even(far));
         let sky = |(i, l): (usize, &Light)| l.is_sky().then(|| Id::new(i));
         let skies = lights.iter().enumerate().filter_map(sky).collect();
         Self { all: lights, tree, far, uneven, skies }
@@ -220,7 +225,7 @@ impl Lights {
     #[inline]
     fn far(&self, strategy: LightStrategy) -> &[FarLight] {
         match strategy {
-            LightStrategy::Complementary => &self.far[..self.uneven],
+            LightStrategy::Complementary => &self.uneven,
             _ => &self.far,
         }
     }

@@ -152,13 +152,17 @@ enum Role {
     /// With others, by where it is.
     Local(LightBounds),
     /// By itself: infinitely far away, with the irradiance that it makes, averaged over the visible
-    /// wavelengths, on a surface turned toward the `direction`, or on any surface where there is none.
-    Far { irradiance: f32, direction: Option<Vec3> },
+    /// wavelengths, on a surface turned toward the `direction`, or on any surface where there is none. The share `uneven` of it
+    /// is more than what comes from all directions alike.
+    Far { irradiance: f32, direction: Option<Vec3>, uneven: f32 },
 }
 
 impl Light {
     fn role(&self) -> Role {
-        let sky = |radiance: f32| Role::Far { irradiance: std::f32::consts::PI * radiance, direction: None };
+        let sky = |radiance: f32, uneven| {
+            let irradiance = std::f32::consts::PI * radiance;
+            Role::Far { irradiance, direction: None, uneven }
+        };
         match self {
             Self::Point(l) => Role::Local(l.bounds()),
             Self::Spot(l) => Role::Local(l.bounds()),
@@ -166,10 +170,11 @@ impl Light {
             Self::Goniometric(l) => Role::Local(l.bounds()),
             Self::Area(l) => Role::Local(l.bounds()),
             Self::Distant(l) => {
-                Role::Far { irradiance: l.irradiance.visible_mean(), direction: Some(l.direction) }
+                let irradiance = l.irradiance.visible_mean();
+                Role::Far { irradiance, direction: Some(l.direction), uneven: 1.0 }
             }
-            Self::Uniform(l) => sky(l.radiance.visible_mean()),
-            Self::Image(l) => sky(l.visible_mean()),
+            Self::Uniform(l) => sky(l.radiance.visible_mean(), 0.0),
+            Self::Image(l) => sky(l.visible_mean(), l.uneven()),
         }
     }
 

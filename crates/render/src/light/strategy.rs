@@ -8,7 +8,7 @@
 /// | `UniformArea` | by area | by direction |
 /// | `SolidAngle` | by solid angle, where the shape can | by direction; even light by the cosine at surfaces |
 /// | `ByTexture` | the same, and where there is a picture also by its brightness | the same, and a picture by its brightness |
-/// | `Complementary` | the same | a picture by its brightness; even light is left to scattered directions |
+/// | `Complementary` | the same | a picture by its brightness above the mean; even light not at all |
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum LightStrategy {
     /// Uniformly over the light's area (quadrics that are stretched unevenly: over that before), or over all directions.
@@ -17,8 +17,8 @@ pub enum LightStrategy {
     SolidAngle,
     /// In proportion to its picture, and to solid angle near it.
     ByTexture,
-    /// The same, but light that is the same from all sides is left to scattered directions, which find it as well: the samples go to
-    /// the other lights. Where lights are sampled alone, this is `ByTexture`.
+    /// The same, but what of a sky is the same from all sides is left to scattered directions, which find it as well: the samples go to
+    /// the brighter parts and to other lights. Where lights are sampled alone, this is `ByTexture`.
     #[default]
     Complementary,
     /// Every area as a single point that the numbers give, at which all its light is gathered; light from infinitely
