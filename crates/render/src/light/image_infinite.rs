@@ -1,8 +1,9 @@
 //! An image infinitely far away on all sides.
 
+use super::far::FarIrradiance;
 use super::{LightSample, LightStrategy, RadianceImage, ShadowTarget};
 use tenfold_image::{Image, Interpolation};
-use tenfold_math::{Mat3, Vec2, Vec3, equal_area_sphere_to_square, equal_area_square_to_sphere};
+use tenfold_math::{DVec3, Mat3, Vec2, Vec3, equal_area_sphere_to_square, equal_area_square_to_sphere};
 use tenfold_sampling::{distribution::PiecewiseConstant2D, warp};
 use tenfold_spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
@@ -17,9 +18,31 @@ pub struct ImageInfinite {
     brightness: PiecewiseConstant2D,
     /// In proportion to what brightness has above its mean.
     excess: PiecewiseConstant2D,
-    /// The share of the light that is above the mean.
-    uneven: f32,
+    /// The share of the light that is above the mean, if there is any to speak of, and the mean of its directions in the world.
+    uneven: Option<(f32, Vec3)>,
     scale: f32,
+}
+
+/// Skies are even where less of their light than this is above the mean: rounding, perhaps.
+const LEAST_UNEVEN: f32 = 0.01;
+/// Directions are taken to be the same within squares, up to so many along an edge of the image.
+const SQUARES: usize = 256;
+
+/// The mean of the directions of the pixels of an image, in its own frame, weighted.
+fn mean_direction(weights: &[f32], width: usize) -> Vec3 {
+    let along = width.min(SQUARES);
+    let square = |i: usize| i * along / width;
+    let mut squares = vec![0f64; along * along];
+    for (i, &weight) in weights.iter().enumerate() {
+        squares[square(i / width) * along + square(i % width)] += f64::from(weight);
+    }
+    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+    for (i, weight) in squares.into_iter().enumerate() {
+        let at = (Vec2::new((i % along) as f32, (i / along) as f32) + 0.5) / along as f32;
+        sum += weight * equal_area_square_to_sphere(at).as_dvec3();
+        total += weight;
+    }
+    (sum / total).as_vec3()
 }
 
 impl ImageInfinite {
@@ -27,27 +50,36 @@ impl ImageInfinite {
     /// `world_from_light` is orthonormal.
     pub fn new(world_from_light: Mat3, image: &Image, space: &RgbColorSpace, scale: f32) -> Self {
         let weights = image.sampling_distribution(Interpolation::Nearest, (Vec2::ZERO, Vec2::ONE), |_| 1.0);
-        let mean = |w: &[f32]| (w.iter().map(|&w| f64::from(w)).sum::<f64>() / w.len() as f64) as f32;
-        let whole = mean(&weights);
-        let excess: Vec<f32> = weights.iter().map(|w| (w - whole).max(0.0)).collect();
-        let distribution = |w: &[f32]| PiecewiseConstant2D::new(w, image.width() as usize);
+        let width = image.width() as usize;
+        let sum = |w: &[f32]| w.iter().map(|&w| f64::from(w)).sum::<f64>();
+        let mean = (sum(&weights) / weights.len() as f64) as f32;
+        let excess: Vec<f32> = weights.iter().map(|w| (w - mean).max(0.0)).collect();
+        let share = (sum(&excess) / sum(&weights)) as f32;
+        let distribution = |w: &[f32]| PiecewiseConstant2D::new(w, width);
         Self {
             world_from_light,
             image: RadianceImage::new(image, space),
             brightness: distribution(&weights),
             excess: distribution(&excess),
-            uneven: if whole > 0.0 { mean(&excess) / whole } else { 0.0 },
+            uneven: (share >= LEAST_UNEVEN)
+                .then(|| (share, world_from_light * mean_direction(&excess, width))),
             scale,
         }
     }
 
-    pub(super) fn visible_mean(&self) -> f32 {
+    fn visible_mean(&self) -> f32 {
         self.scale * self.image.visible_mean()
     }
 
-    /// The share of the light that is above the mean of all directions.
-    pub(super) fn uneven(&self) -> f32 {
-        self.uneven
+    /// What it lights surfaces with.
+    pub(super) fn irradiance(&self) -> FarIrradiance {
+        FarIrradiance::around(self.visible_mean(), Vec3::ZERO)
+    }
+
+    /// The same by light above the mean of all directions alone, if there is any to speak of.
+    pub(super) fn uneven_irradiance(&self) -> Option<FarIrradiance> {
+        let (share, toward) = self.uneven?;
+        Some(FarIrradiance::around(share * self.visible_mean(), toward))
     }
 
     /// How `strategy` distributes points on the square, if not evenly. What is left to scattered directions is what they find

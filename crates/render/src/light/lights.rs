@@ -1,6 +1,7 @@
 //! All lights of a scene.
 
 use super::choice::{Entry, LightTree, MAX_LIGHTS};
+use super::far::FarIrradiance;
 use super::{Light, LightSample, LightStrategy, Role};
 use tenfold_geometry::{ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Id, Vec2, Vec3};
@@ -27,19 +28,7 @@ pub struct Lights {
 #[derive(Copy, Clone, Debug)]
 struct FarLight {
     light: u32,
-    irradiance: f32,
-    direction: Option<Vec3>,
-}
-
-impl FarLight {
-    /// An estimate of the irradiance at `from`: comparable to that of the tree.
-    #[inline]
-    fn importance(&self, from: &ReferencePoint) -> f32 {
-        match self.direction {
-            Some(d) if from.ns != Vec3::ZERO => self.irradiance * from.cosine(d),
-            _ => self.irradiance,
-        }
-    }
+    irradiance: FarIrradiance,
 }
 
 /// The chances of the candidates beside each other: one for the tree, if it has any light to offer, and one
@@ -54,8 +43,6 @@ struct Candidates {
 
 /// What part of the probability candidates get evenly.
 const EVENLY: f32 = 0.25;
-/// Skies are even where less of their light than this is above the mean: rounding, perhaps.
-const LEAST_UNEVEN: f32 = 0.01;
 
 impl Candidates {
     /// Probability of a candidate of this importance.
@@ -87,12 +74,10 @@ impl Lights {
                 Role::Local(bounds) if bounds.intensity > 0.0 => {
                     entries.push(Entry { bounds, light: i as u32 });
                 }
-                Role::Far { irradiance, direction, uneven: share } if irradiance > 0.0 => {
-                    let whole = FarLight { light: i as u32, irradiance, direction };
-                    far.push(whole);
-                    if share >= LEAST_UNEVEN {
-                        uneven.push(FarLight { irradiance: share * irradiance, ..whole });
-                    }
+                Role::Far { whole, uneven: part } if whole.is_some() => {
+                    let of = |irradiance| FarLight { light: i as u32, irradiance };
+                    far.push(of(whole));
+                    uneven.extend(part.map(of));
                 }
                 Role::Local(_) | Role::Far { .. } => {}
             }
@@ -216,7 +201,7 @@ impl Lights {
             return candidates.probability(candidates.tree) * in_tree;
         }
         match all_far.iter().find(|far| far.light as usize == light) {
-            Some(far) => self.candidates(all_far, from).probability(far.importance(from)),
+            Some(far) => self.candidates(all_far, from).probability(far.irradiance.at(from)),
             None => 0.0,
         }
     }
@@ -235,7 +220,7 @@ impl Lights {
         let tree = self.tree.importance(from);
         let mut candidates = Candidates { tree, total: tree, count: if tree > 0.0 { 1.0 } else { 0.0 } };
         for far in all_far {
-            let importance = far.importance(from);
+            let importance = far.irradiance.at(from);
             if importance > 0.0 {
                 candidates.total += importance;
                 candidates.count += 1.0;
@@ -257,7 +242,7 @@ impl Lights {
             let candidates = self.candidates(all_far, from);
             let mut chosen = None;
             for far in all_far {
-                let pmf = candidates.probability(far.importance(from));
+                let pmf = candidates.probability(far.irradiance.at(from));
                 if pmf > 0.0 {
                     chosen = Some(Choice { light: far.light as usize, pmf });
                     if u < pmf {

@@ -10,6 +10,7 @@ mod choice;
 mod distant;
 mod emission;
 mod emitter;
+mod far;
 mod goniometric;
 mod image_infinite;
 mod lights;
@@ -40,6 +41,7 @@ pub(crate) use spot::is_similarity;
 pub use strategy::LightStrategy;
 pub use uniform::UniformInfinite;
 
+use far::FarIrradiance;
 use tenfold_geometry::{ReferencePoint, SHADOW_T_MAX, ShapeSample, ray_between};
 use tenfold_math::{Ray, Vec2, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
@@ -151,18 +153,12 @@ impl LightSample {
 enum Role {
     /// With others, by where it is.
     Local(LightBounds),
-    /// By itself: infinitely far away, with the irradiance that it makes, averaged over the visible
-    /// wavelengths, on a surface turned toward the `direction`, or on any surface where there is none. The share `uneven` of it
-    /// is more than what comes from all directions alike.
-    Far { irradiance: f32, direction: Option<Vec3>, uneven: f32 },
+    /// By itself, infinitely far away: by all of its light, and by what of it does not come from all directions alike.
+    Far { whole: FarIrradiance, uneven: Option<FarIrradiance> },
 }
 
 impl Light {
     fn role(&self) -> Role {
-        let sky = |radiance: f32, uneven| {
-            let irradiance = std::f32::consts::PI * radiance;
-            Role::Far { irradiance, direction: None, uneven }
-        };
         match self {
             Self::Point(l) => Role::Local(l.bounds()),
             Self::Spot(l) => Role::Local(l.bounds()),
@@ -171,10 +167,14 @@ impl Light {
             Self::Area(l) => Role::Local(l.bounds()),
             Self::Distant(l) => {
                 let irradiance = l.irradiance.visible_mean();
-                Role::Far { irradiance, direction: Some(l.direction), uneven: 1.0 }
+                let whole = FarIrradiance::Parallel { irradiance, direction: l.direction };
+                Role::Far { whole, uneven: Some(whole) }
             }
-            Self::Uniform(l) => sky(l.radiance.visible_mean(), 0.0),
-            Self::Image(l) => sky(l.visible_mean(), l.uneven()),
+            Self::Uniform(l) => Role::Far {
+                whole: FarIrradiance::around(l.radiance.visible_mean(), Vec3::ZERO),
+                uneven: None,
+            },
+            Self::Image(l) => Role::Far { whole: l.irradiance(), uneven: l.uneven_irradiance() },
         }
     }
 
