@@ -23,16 +23,6 @@ pub fn next_up(x: f32) -> f32 {
     x.next_up()
 }
 
-/// The next larger float where `sign` is positive, the next smaller where it is negative, and `x` where it is zero: without
-/// branches, which signs of normals would mislead. `x` must be finite; −0 and 0 count as two floats.
-#[inline]
-pub fn next_by_sign(x: f32, sign: f32) -> f32 {
-    // As integers, floats are in order once the lower bits of the negative ones are flipped.
-    let ordered = |bits: i32| bits ^ ((bits >> 31) as u32 >> 1) as i32;
-    let step = i32::from(sign > 0.0) - i32::from(sign < 0.0);
-    f32::from_bits(ordered(ordered(x.to_bits() as i32) + step) as u32)
-}
-
 /// The largest index `i` in `[0, n - 2]` with `below(i)` true, 0 where there is none.
 /// `below` must be true up to some index and false from there on.
 #[inline]
@@ -54,17 +44,6 @@ pub fn find_interval(n: usize, below: impl Fn(usize) -> bool) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_next_float_follows_the_sign() {
-        for x in [1.0f32, -1.0, 0.1, -1e-40, 1e-45, f32::MAX / 2.0, -0.5, 3e38] {
-            assert_eq!(next_by_sign(x, 2.0), x.next_up(), "{x}");
-            assert_eq!(next_by_sign(x, -1e-30), x.next_down(), "{x}");
-            assert_eq!(next_by_sign(x, 0.0), x);
-            assert_eq!(next_by_sign(x, -0.0), x);
-        }
-        assert!(next_by_sign(0.0, 1.0) > 0.0);
-    }
 
     #[test]
     fn intervals_bracket_their_value() {

@@ -46,7 +46,7 @@ impl Default for SampleRoom {
 impl SampleRoom {
     /// Makes room for the block of `sample`; false where its samples are too few to be worth it.
     pub(super) fn begin(&mut self, sample: SobolSample) -> bool {
-        if sample.block_size() < 8 || !sample.block_is_whole() {
+        if sample.block_size() < 8 {
             return false;
         }
         let block = Some(sample.at_place(0));

@@ -77,32 +77,69 @@ impl SobolSample {
 
     /// Whether the block has all its places taken.
     #[inline]
-    pub(super) fn block_is_whole(&self) -> bool {
+    fn block_is_whole(&self) -> bool {
         self.size == 1 << self.place_bits
     }
 
-    /// The two numbers of the `LANES` samples at the places from `first` in a block that is whole: those of [`Self::get_2d`], to be
-    /// computed in the lanes of a vector. Places beyond the block's size get numbers without meaning.
+    /// The two numbers of the `LANES` samples at the places from `first` in the block, as [`Self::get_2d`] has them, by operations for the
+    /// lanes of vectors. Places beyond the block's size get those of its last.
     #[inline(always)]
     pub(super) fn get_lanes<const LANES: usize>(&self, key: u32, first: u32) -> [[f32; LANES]; 2] {
         let h = combine(self.seed, u64::from(key));
-        let block_key = h ^ self.block_seed;
+        let (mut x, mut y) = match self.block_is_whole() {
+            true => self.coordinates_in_whole::<LANES>(h, first),
+            false => self.coordinates_in_part::<LANES>(h, first),
+        };
+        for (coordinates, seed) in [(&mut x, h as u32), (&mut y, (h >> 32) as u32)] {
+            coordinates.iter_mut().for_each(|x| *x = scramble(*x, seed).reverse_bits());
+        }
+        [x, y].map(|coordinates| {
+            let mut numbers = [0.0; LANES];
+            for (number, bits) in numbers.iter_mut().zip(coordinates) {
+                // As `unit_f32`, by way of signed integers, for which more machines have an instruction.
+                *number = (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32);
+            }
+            numbers
+        })
+    }
+
+    /// The coordinates of points before they are scrambled, their first bits the lowest, for places from `first` in a whole block.
+    #[inline(always)]
+    fn coordinates_in_whole<const LANES: usize>(&self, h: u64, first: u32) -> ([u32; LANES], [u32; LANES]) {
         // Places are the lowest bits of the index, so the coordinates of the block and of the place add up (without carry).
         let block = (shuffle(self.mirrored, h, self.digits) << self.shift).reverse_bits();
         let (block_x, block_y) = (block as u32, second(block));
-        let number = |x: u32, seed: u32| {
-            let bits = scramble(x, seed).reverse_bits();
-            // As `unit_f32`, by way of a signed integer, for which more machines have an instruction.
-            (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32)
-        };
-        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+        let (mut x, mut y) = ([0; LANES], [0; LANES]);
         for (place, (x, y)) in (first..).zip(x.iter_mut().zip(&mut y)) {
-            let place = scatter(place, self.place_bits, block_key);
-            let index = place.reverse_bits() >> (32 - self.place_bits);
-            *x = number(block_x ^ index, h as u32);
-            *y = number(block_y ^ second_of_few(index), (h >> 32) as u32);
+            let index = scatter(place, self.place_bits, h ^ self.block_seed);
+            let index = index.reverse_bits() >> (32 - self.place_bits);
+            *x = block_x ^ index;
+            *y = block_y ^ second_of_few(index);
         }
-        [x, y]
+        (x, y)
+    }
+
+    /// The same in a block that is not whole.
+    #[inline(always)]
+    fn coordinates_in_part<const LANES: usize>(&self, h: u64, first: u32) -> ([u32; LANES], [u32; LANES]) {
+        let scattered = |place| scatter(place, self.place_bits, h ^ self.block_seed);
+        let mut places = [0; LANES];
+        for (place, at) in (first..).zip(&mut places) {
+            *at = scattered(place.min(self.size - 1));
+        }
+        while places.iter().fold(false, |beyond, &place| beyond | (place >= self.size)) {
+            for place in &mut places {
+                *place = if *place >= self.size { scattered(*place) } else { *place };
+            }
+        }
+        let (mut x, mut y) = ([0; LANES], [0; LANES]);
+        for (place, (x, y)) in places.iter().zip(x.iter_mut().zip(&mut y)) {
+            let place = u64::from(place.reverse_bits()) << (32 - self.shift);
+            let index = (shuffle(self.mirrored | place, h, self.digits) << self.shift).reverse_bits();
+            *x = index as u32;
+            *y = second(index);
+        }
+        (x, y)
     }
 
     #[inline]
