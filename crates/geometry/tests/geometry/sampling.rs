@@ -387,13 +387,24 @@ fn areas_and_solid_angles_match_closed_forms() {
     assert!((pdf * PI / 2.0 - 1.0).abs() < 1e-5);
     assert!((octant.primitive(0).area() - 0.5 * 3f32.sqrt()).abs() < 1e-6);
     // A square of half side a at distance d: 4 atan(a² / (d √(2a² + d²))).
-    for (a, d) in [(1.0f32, 1.0f32), (0.1, 2.0), (5.0, 0.3)] {
+    for (a, d) in [(1.0f32, 1.0f32), (0.1, 0.2), (5.0, 0.3), (0.1, 2.0), (1e-3, 5.0)] {
         let z = Vec3::new(0.0, 0.0, d);
         let [x, y] = [a * Vec3::X, a * Vec3::Y];
         let square = one_patch([z - x - y, z + x - y, z - x + y, z + x + y]);
         let want = 4.0 * ops::atan(a * a / (d * (2.0 * a * a + d * d).sqrt()));
+        let near = a > 0.4 * d;
         let pdf = square.primitive(0).pdf_from(&origin, Vec3::Z);
-        assert!((pdf * want - 1.0).abs() < 1e-5, "{a} {d}");
+        // From near by all directions are alike; from afar, those whose light matters more have the larger density.
+        assert!((pdf * want - 1.0).abs() < if near { 1e-5 } else { a * a / (d * d) + 1e-5 }, "{a} {d}");
+        // In either case the mean of the inverse density is the solid angle.
+        let n = 64;
+        let place = |i| Vec2::new(((i % n) as f32 + 0.5) / n as f32, ((i / n) as f32 + 0.5) / n as f32);
+        let inverses = (0..n * n).map(|i| {
+            let sample = square.primitive(0).sample_from(&origin, place(i)).unwrap();
+            f64::from(1.0 / sample.pdf)
+        });
+        let mean = (inverses.sum::<f64>() / f64::from(n * n)) as f32;
+        assert!((mean / want - 1.0).abs() < 1e-4, "{a} {d}: {mean} {want}");
         assert!((square.primitive(0).area() / (4.0 * a * a) - 1.0).abs() < 1e-5);
     }
     let t = Transform::scale(Vec3::new(2.0, 2.0, 2.0)).unwrap();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::SAMPLES;
 use crate::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
 
 /// Why points do not make a piecewise linear spectrum.
@@ -37,8 +38,8 @@ pub enum PiecewiseError {
 pub struct PiecewiseLinear {
     /// (wavelength in nm, value), by increasing wavelength.
     points: Arc<[[f32; 2]]>,
-    /// Points per nm where the points are equidistant: they are then found without a search.
-    density: Option<f32>,
+    /// For every whole nanometre of the rendered range the last point that is not beyond it, or the first: where to look for intervals.
+    starts: Arc<[u32; SAMPLES]>,
 }
 
 impl PiecewiseLinear {
@@ -67,11 +68,13 @@ impl PiecewiseLinear {
         if let Some(i) = points.windows(2).position(|p| p[0][0] >= p[1][0]) {
             return Err(PiecewiseError::NotIncreasing { index: i + 1 });
         }
-        let (first, last) = (points[0][0], points[points.len() - 1][0]);
-        let step = (last - first) / (points.len() - 1).max(1) as f32;
-        let regular =
-            points.len() > 2 && points.iter().enumerate().all(|(i, p)| p[0] == first + i as f32 * step);
-        Ok(Self { points: points.into(), density: regular.then_some(1.0 / step) })
+        Ok(Self::prepared(points))
+    }
+
+    /// From points that have been checked.
+    fn prepared(points: Vec<[f32; 2]>) -> Self {
+        let start = |i| interval(&points, LAMBDA_MIN + i as f32) as u32;
+        Self { starts: Arc::new(std::array::from_fn(start)), points: points.into() }
     }
 
     /// The same with the end values held constant out to beyond the rendered range, where the points do not cover
@@ -84,12 +87,13 @@ impl PiecewiseLinear {
         if let Some(&[lambda, v]) = points.last().filter(|p| p[0] < LAMBDA_MAX) {
             points.push([LAMBDA_MAX.max(lambda) + 1.0, v]);
         }
-        Self { points: points.into(), density: None }
+        Self::prepared(points)
     }
 
     /// A copy with all values times `factor`.
     pub fn scaled(&self, factor: f32) -> Self {
-        Self { points: self.points.iter().map(|&[l, v]| [l, v * factor]).collect(), density: self.density }
+        let points = self.points.iter().map(|&[l, v]| [l, v * factor]).collect();
+        Self { points, starts: self.starts.clone() }
     }
 
     /// The points: (wavelength in nm, value), by increasing wavelength.
@@ -106,9 +110,12 @@ impl PiecewiseLinear {
             return 0.0;
         }
         // The interval [i, i + 1] that holds lambda.
-        let i = match self.density {
-            Some(d) => ((lambda - p[0][0]) * d) as usize,
-            None => p.partition_point(|q| q[0] <= lambda).saturating_sub(1),
+        let i = match self.starts.get((lambda - LAMBDA_MIN) as usize) {
+            Some(&start) if lambda >= LAMBDA_MIN => {
+                let beyond = p[start as usize + 1..].iter().take_while(|q| q[0] <= lambda).count();
+                start as usize + beyond
+            }
+            _ => interval(p, lambda),
         };
         if i >= last {
             return p[last][1];
@@ -128,6 +135,11 @@ impl PiecewiseLinear {
     pub fn max_value(&self) -> f32 {
         self.points.iter().map(|p| p[1]).fold(f32::MIN, f32::max)
     }
+}
+
+/// The index of the last of `points` that is not beyond `lambda`; 0 where all are.
+fn interval(points: &[[f32; 2]], lambda: f32) -> usize {
+    points.partition_point(|q| q[0] <= lambda).saturating_sub(1)
 }
 
 #[cfg(test)]
@@ -162,15 +174,31 @@ mod tests {
     }
 
     #[test]
-    fn the_quick_search_agrees_with_the_slow_one() {
-        let lambdas: Vec<f32> = (0..61).map(|i| 300.0 + 10.0 * i as f32).collect();
-        let values: Vec<f32> = lambdas.iter().map(|l| ops::sin(l * 0.05)).collect();
-        let quick = PiecewiseLinear::new(lambdas, values).unwrap();
-        assert!(quick.density.is_some());
-        let slow = PiecewiseLinear { density: None, ..quick.clone() };
-        for i in 0..7000 {
-            let lambda = 250.0 + 0.1 * i as f32;
-            assert!((quick.eval(lambda) - slow.eval(lambda)).abs() < 1e-5, "{lambda}");
+    fn intervals_are_those_of_a_search() {
+        // Regular points; such as lie closer than whole nanometres, and on both sides of the rendered range.
+        let regular: Vec<f32> = (0..61).map(|i| 300.0 + 10.0 * i as f32).collect();
+        let uneven: Vec<f32> = (0..900).map(|i| 355.0 + 0.0007 * (i * i) as f32).collect();
+        for lambdas in [regular, uneven, vec![361.0, 900.0], vec![100.0, 829.7, 829.9, 830.0]] {
+            let values: Vec<f32> = lambdas.iter().map(|l| ops::sin(l * 0.05)).collect();
+            let s = PiecewiseLinear::new(lambdas.clone(), values.clone()).unwrap();
+            for i in 0..7000 {
+                let lambda = 250.0 + 0.1 * i as f32;
+                let want = match lambdas.partition_point(|l| *l <= lambda) {
+                    0 => 0.0,
+                    n if n == lambdas.len() => {
+                        if lambda == lambdas[n - 1] {
+                            values[n - 1]
+                        } else {
+                            0.0
+                        }
+                    }
+                    n => {
+                        let t = (lambda - lambdas[n - 1]) / (lambdas[n] - lambdas[n - 1]);
+                        values[n - 1] * (1.0 - t) + values[n] * t
+                    }
+                };
+                assert_eq!(s.eval(lambda), want, "{lambda}");
+            }
         }
     }
 
