@@ -3,7 +3,7 @@
 use super::{
     Bvh,
     build::{Counts, Hull, Inner, Reference, Target, Tree, Word},
-    node::{Child, Kind, LeafPrimitive, Node, TriangleBlock},
+    node::{Child, Kind, LeafPrimitive, Node, TriangleBlock, WIDTH},
     with_capacity,
 };
 use rayon::prelude::*;
@@ -44,15 +44,18 @@ impl Room<'_> {
 
 /// What is laid out.
 struct Source<'a, P> {
-    references: &'a [Reference],
+    references: &'a [MaybeUninit<Reference>],
     positions: &'a P,
 }
 
 /// The hierarchy of a tree over sorted references. `positions` gives the corners of triangles.
-pub(super) fn lay_out(
+///
+/// # Safety
+/// The references that leaves name must be initialised.
+pub(super) unsafe fn lay_out(
     tree: &Tree,
     bounds: Bounds3,
-    references: &[Reference],
+    references: &[MaybeUninit<Reference>],
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) -> Bvh {
     let counts = tree.counts();
@@ -85,7 +88,7 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         match tree {
             Tree::Node(inner) => self.node(inner, room),
             Tree::Bulk(bulk) => {
-                self.bulk(&mut bulk.words.iter(), bulk.first, &mut room);
+                self.bulk(&mut bulk.nodes.iter(), &mut room);
                 room.assert_full();
             }
             Tree::Leaf { .. } => {}
@@ -98,7 +101,7 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         let mut below = Vec::new();
         for (slot, (bounds, tree)) in inner.children.iter().enumerate() {
             let child = match tree {
-                Tree::Leaf { first, len } => self.leaf(&self.references[*first..first + len], &mut room),
+                Tree::Leaf { first, len } => self.leaf(self.references(*first, *len), &mut room),
                 _ => {
                     let room = room.take(tree.counts());
                     let child = Child::new(Kind::Node, room.first.nodes);
@@ -113,34 +116,37 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         below.into_par_iter().for_each(|(tree, room)| self.tree(tree, room));
     }
 
-    /// A node, whose first reference is `first`, and all below it. Returns the box around it.
-    fn bulk(&self, words: &mut std::slice::Iter<'_, Word>, first: usize, room: &mut Room<'_>) -> Bounds3 {
+    /// The next node and all below it. Returns the box around it.
+    fn bulk(&self, nodes: &mut std::slice::Iter<'_, [Option<Word>; WIDTH]>, room: &mut Room<'_>) -> Bounds3 {
         let own = room.take(Counts { nodes: 1, ..Counts::default() });
         let mut node = Node::EMPTY;
-        let count = words.next().map_or(0, |word| word.len());
-        let children = &words.as_slice()[..count];
-        *words = words.as_slice()[count..].iter();
         let mut all = Hull::EMPTY;
+        let words = nodes.next().expect("as many nodes as words for them");
         // The leaves of a node lie side by side.
-        for is_node in [false, true] {
-            let mut first = first;
-            for (slot, child) in children.iter().enumerate() {
-                if child.is_node() && is_node {
-                    let index = room.first.nodes;
-                    let bounds = self.bulk(words, first, room);
-                    node.set(slot, &bounds, Child::new(Kind::Node, index));
-                    all = all.union(&Hull::new(bounds));
-                } else if !child.is_node() && !is_node {
-                    let leaf = &self.references[first..first + child.len()];
-                    let hull = leaf.iter().fold(Hull::EMPTY, |hull, r| hull.union(r.hull()));
-                    node.set(slot, &hull.bounds(), self.leaf(leaf, room));
-                    all = all.union(&hull);
-                }
-                first += child.len();
+        for (slot, word) in words.iter().enumerate() {
+            if let Some(Word::Leaf { first, len }) = word {
+                let leaf = self.references(*first as usize, usize::from(*len));
+                let hull = leaf.iter().fold(Hull::EMPTY, |hull, r| hull.union(r.hull()));
+                node.set(slot, &hull.bounds(), self.leaf(leaf, room));
+                all = all.union(&hull);
+            }
+        }
+        for (slot, word) in words.iter().enumerate() {
+            if let Some(Word::Node) = word {
+                let index = room.first.nodes;
+                let bounds = self.bulk(nodes, room);
+                node.set(slot, &bounds, Child::new(Kind::Node, index));
+                all = all.union(&Hull::new(bounds));
             }
         }
         own.nodes[0].write(node);
         all.bounds()
+    }
+
+    fn references(&self, first: usize, len: usize) -> &[Reference] {
+        let part = &self.references[first..first + len];
+        // SAFETY: leaves name initialised references.
+        unsafe { std::slice::from_raw_parts(part.as_ptr().cast(), part.len()) }
     }
 
     fn leaf(&self, leaf: &[Reference], room: &mut Room<'_>) -> Child {

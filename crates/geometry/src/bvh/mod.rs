@@ -45,9 +45,16 @@ impl Bvh {
                 bounds: Bounds3::EMPTY,
             };
         }
-        build::presplit(&mut references, &positions);
-        let (bounds, tree) = build::build(&mut references);
-        layout::lay_out(&tree, bounds, &references, &positions)
+        let extra = build::presplit(&mut references, &positions);
+        let len = references.len();
+        references.reserve_exact(extra);
+        references.clear();
+        let references = &mut references.spare_capacity_mut()[..len + extra];
+        // SAFETY: the first were initialised, and the builder leaves its leaves so.
+        unsafe {
+            let (bounds, tree) = build::build(references, len, &positions);
+            layout::lay_out(&tree, bounds, references, &positions)
+        }
     }
 
     /// A box around everything.

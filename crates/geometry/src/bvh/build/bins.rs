@@ -99,7 +99,7 @@ impl Histogram {
 
     /// The cheapest plane; `None` where all middles coincide.
     #[inline(always)]
-    fn best<V: Vector>(&self, bins: Bins) -> Option<(Split, [Hull; 2])> {
+    fn best<V: Vector>(&self, bins: Bins) -> Option<(Split, [Hull; 2], f32)> {
         let mut best: Option<(Split, f32)> = None;
         for axis in 0..3 {
             if bins.scale.0[axis] == 0.0 {
@@ -129,74 +129,56 @@ impl Histogram {
                 }
             }
         }
-        let (split, _) = best?;
+        let (split, cost) = best?;
         let union = |hulls: &[Hull]| {
             Hull::store(hulls.iter().fold(V::splat(f32::INFINITY), |union, hull| union.min(hull.load())))
         };
         let (low, high) = self.hulls[split.axis][..bins.count].split_at(split.bin);
-        Some((split, [union(low), union(high)]))
+        Some((split, [union(low), union(high)], cost))
     }
 }
 
 /// What a half with `n` triangles costs: its area times the leaf blocks that they need.
 #[inline(always)]
-fn cost(hull: Hull, n: u32) -> f32 {
+pub(super) fn cost(hull: Hull, n: u32) -> f32 {
     hull.half_area() * n.div_ceil(LANES as u32) as f32
 }
 
-/// Half of some items.
-pub(super) struct Half<'a, T> {
-    pub(super) items: Pair<'a, T>,
-    pub(super) bounds: Hull,
+/// What became of items that were sorted into halves.
+pub(super) struct Halves {
+    /// How many are in the first half.
+    pub(super) low: usize,
+    pub(super) bounds: [Hull; 2],
     /// Around the doubled middles.
-    pub(super) middles: Hull,
+    pub(super) middles: [Hull; 2],
+    /// The sum of area times blocks.
+    pub(super) cost: f32,
 }
 
-/// Splits items at the cheapest plane. Gives them back where their doubled `middles` coincide.
-pub(super) fn split<'a, T: Item>(
-    level: Level,
-    mut items: Pair<'a, T>,
-    middles: &Hull,
-) -> Result<[Half<'a, T>; 2], Pair<'a, T>> {
+/// Sorts items by the cheapest plane to the front and the back of the pair's other side. `None`, and nothing is written, where there is no plane
+/// since the doubled `middles` coincide.
+pub(super) fn sort<T: Item>(level: Level, items: &mut Pair<'_, T>, middles: &Hull) -> Option<Halves> {
     let (from, to) = items.sides();
-    let sorted = match level {
-        Level::Portable => sort::<Portable, T>(from, middles, to),
+    match level {
+        Level::Portable => sort_with::<Portable, T>(from, middles, to),
         // SAFETY: the token proves that the machine has AVX2.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(_) => unsafe { sort_avx2(from, middles, to) },
-    };
-    let Some(sorted) = sorted else { return Err(items) };
-    // SAFETY: all of the room was written.
-    let [low, high] = unsafe { items.swapped() }.split_at(sorted.low);
-    let [low_bounds, high_bounds] = sorted.bounds;
-    let [low_middles, high_middles] = sorted.middles;
-    Ok([
-        Half { items: low, bounds: low_bounds, middles: low_middles },
-        Half { items: high, bounds: high_bounds, middles: high_middles },
-    ])
-}
-
-/// What became of items that were split.
-struct Sorted {
-    /// How many are in the first half.
-    low: usize,
-    bounds: [Hull; 2],
-    middles: [Hull; 2],
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-fn sort_avx2<T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Sorted> {
-    sort::<crate::bvh::simd::Avx2, T>(items, middles, to)
+fn sort_avx2<T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Halves> {
+    sort_with::<crate::bvh::simd::Avx2, T>(items, middles, to)
 }
 
-/// Writes all of `to`, as large as `items`: first those below the plane. `None`, and nothing written, where there is no plane.
 #[inline(always)]
-fn sort<S: Simd, T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Sorted> {
+fn sort_with<S: Simd, T: Item>(items: &[T], middles: &Hull, to: &mut [MaybeUninit<T>]) -> Option<Halves> {
     let bins = Bins::new(middles, items.len());
-    let (split, bounds) = Histogram::of::<S::F8, T>(items, &bins).best::<S::F8>(bins)?;
+    let (split, bounds, cost) = Histogram::of::<S::F8, T>(items, &bins).best::<S::F8>(bins)?;
     let (low, middles) = partition::<S::F8, T>(items, &split, to);
-    Some(Sorted { low, bounds, middles })
+    Some(Halves { low, bounds, middles, cost })
 }
 
 /// The maximum with the first is not in the way of any minimum; that with the second changes nothing.
@@ -210,9 +192,9 @@ fn partition<V: Vector, T: Item>(
     split: &Split,
     to: &mut [MaybeUninit<T>],
 ) -> (usize, [Hull; 2]) {
-    let to = &mut to[..items.len()];
+    assert!(items.len() <= to.len());
     let plane = V::splat(split.bin as f32);
-    let (mut i, mut j) = (0, items.len());
+    let (mut i, mut j) = (0, to.len());
     let mut middles = [V::splat(f32::INFINITY); 2];
     for item in items {
         let middle = middle(item.hull().load::<V>());
@@ -272,17 +254,22 @@ mod tests {
             let references: Vec<Reference> = (0..n).map(&mut reference).collect();
             let split = |level: Level| {
                 let mut items = references.clone();
-                let mut room = Vec::with_capacity(items.len());
+                let mut room: Vec<Reference> = Vec::with_capacity(items.len());
                 let [_, middles] = around(level, &items);
-                let pair = Pair::new(&mut items, room.spare_capacity_mut());
-                let halves = split(level, pair, &middles).ok().expect("a plane");
+                // SAFETY: nothing but items.
+                let home = unsafe { std::slice::from_raw_parts_mut(items.as_mut_ptr().cast(), items.len()) };
+                // SAFETY: as many as there are.
+                let mut pair = unsafe { Pair::new(home, n as usize, room.spare_capacity_mut()) };
+                let halves = sort(level, &mut pair, &middles).expect("a plane");
+                // SAFETY: all were written.
+                let pairs = unsafe { pair.swapped(halves.low, n as usize - halves.low, |_| 0.0) };
                 let mut targets: Vec<String> = Vec::new();
-                for half in &halves {
-                    let items = half.items.items();
+                for (i, pair) in pairs.iter().enumerate() {
+                    let items = pair.items();
                     assert!(!items.is_empty());
                     let [bounds, middles] = around(Level::Portable, items);
-                    assert_eq!(half.bounds.bounds(), bounds.bounds());
-                    assert_eq!(half.middles.bounds(), middles.bounds());
+                    assert_eq!(halves.bounds[i].bounds(), bounds.bounds());
+                    assert_eq!(halves.middles[i].bounds(), middles.bounds());
                     targets.extend(items.iter().map(|r| format!("{:?}", r.target())));
                 }
                 let mut sorted = targets.clone();

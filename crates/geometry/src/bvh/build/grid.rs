@@ -158,12 +158,19 @@ pub(super) fn sort(
         cell.count += part.count;
     }
     let Cells { mut cells, slots: mut leaf_of } = all;
-    if cells.len() < 2 {
+    let n = cells.len();
+    if n < 2 {
         return None;
     }
-    let mut other = Vec::with_capacity(cells.len());
     let [bounds, middles] = bins::around(level, &cells);
-    let top = grow(level, Pair::new(&mut cells, other.spare_capacity_mut()), bounds, &middles);
+    let mut other = Vec::with_capacity(n);
+    let mut home = Vec::with_capacity(n);
+    home.extend(cells.iter().map(|cell| MaybeUninit::new(*cell)));
+    // SAFETY: all of them are cells.
+    let pair = unsafe { Pair::new(&mut home, n, other.spare_capacity_mut()) };
+    let top = grow(level, pair, bounds, &middles);
+    // SAFETY: sorted cells are cells.
+    cells.iter_mut().zip(&home).for_each(|(cell, sorted)| *cell = unsafe { sorted.assume_init() });
     let mut leaves = 0;
     let mut rest = &cells[..];
     top.for_leaves(&mut |leaf| {
@@ -201,28 +208,27 @@ pub(super) fn sort(
 }
 
 /// The part of the upper tree over some cells.
-fn grow(level: Level, cells: Pair<'_, Cell>, bounds: Hull, middles: &Hull) -> Top {
+fn grow(level: Level, mut cells: Pair<'_, Cell>, bounds: Hull, middles: &Hull) -> Top {
     let n = cells.items().len();
     let len = cells.items().iter().map(|cell| cell.count as usize).sum();
     let halves = match len > PIECE && (n >= FEW || len > MOST) {
-        true => bins::split(level, cells, middles),
-        false => Err(cells),
+        true => bins::sort(level, &mut cells, middles),
+        false => None,
     };
-    match halves {
-        Ok(halves) => {
-            let [low, high] =
-                halves.map(|half| move || Box::new(grow(level, half.items, half.bounds, &half.middles)));
-            let (low, high) = match n > PARALLEL {
-                true => rayon::join(low, high),
-                false => (low(), high()),
-            };
-            Top { bounds, len, cells: n, halves: Some([low, high]) }
-        }
-        Err(mut cells) => {
-            cells.finish();
-            Top { bounds, len, cells: n, halves: None }
-        }
-    }
+    let Some(halves) = halves else {
+        cells.finish();
+        return Top { bounds, len, cells: n, halves: None };
+    };
+    // SAFETY: all cells were written.
+    let [low, high] = unsafe { cells.swapped(halves.low, n - halves.low, |_| 0.0) };
+    let ([low_bounds, high_bounds], [low_middles, high_middles]) = (halves.bounds, halves.middles);
+    let low = || Box::new(grow(level, low, low_bounds, &low_middles));
+    let high = || Box::new(grow(level, high, high_bounds, &high_middles));
+    let (low, high) = match n > PARALLEL {
+        true => rayon::join(low, high),
+        false => (low(), high()),
+    };
+    Top { bounds, len, cells: n, halves: Some([low, high]) }
 }
 
 impl Top {

@@ -29,6 +29,12 @@ impl Hull {
         Self(std::array::from_fn(|i| if self.0[i] < b.0[i] { self.0[i] } else { b.0[i] }))
     }
 
+    /// What is in both; `None` where nothing is.
+    pub(super) fn intersection(&self, b: &Self) -> Option<Self> {
+        let both = Self(std::array::from_fn(|i| if self.0[i] > b.0[i] { self.0[i] } else { b.0[i] }));
+        (0..3).all(|axis| both.0[axis] <= -both.0[axis + 4]).then_some(both)
+    }
+
     /// Half the surface area; for what is not empty.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {

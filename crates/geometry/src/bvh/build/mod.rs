@@ -1,4 +1,4 @@
-//! Building: long triangles are cut first, then the tree grows top-down, straight to eight children.
+//! Building: the longest triangles are cut first, then the tree grows top-down, straight to eight children.
 
 mod bins;
 mod grid;
@@ -7,14 +7,17 @@ mod pair;
 mod presplit;
 mod range;
 mod reference;
+mod spatial;
 
 pub(super) use hull::Hull;
 pub(crate) use presplit::presplit;
 pub(crate) use reference::{Reference, Target, padded};
 
 use super::{node::WIDTH, traverse::Level, with_capacity};
-use range::Range;
+use pair::Pair;
+use range::{Context, Range};
 use rayon::prelude::*;
+use spatial::Positions;
 use std::mem::MaybeUninit;
 use tenfold_math::Bounds3;
 
@@ -26,7 +29,7 @@ pub(super) const MAX_DEPTH: usize = 18;
 /// A tree over the sorted references before it is laid out.
 pub(super) enum Tree {
     Node(Box<Inner>),
-    /// A tree whose root is a node, written down as numbers.
+    /// A tree whose root is a node.
     Bulk(Bulk),
     /// A range of references.
     Leaf {
@@ -54,31 +57,25 @@ pub(super) struct Inner {
     pub(super) counts: Counts,
 }
 
-/// A tree whose leaves follow each other in the references.
+/// A tree as its nodes, depth first.
+#[derive(Default)]
 pub(super) struct Bulk {
-    /// The nodes, depth first: how many children, and of each a [`Word`].
-    pub(super) words: Vec<Word>,
-    /// Index of the first reference.
-    pub(super) first: usize,
+    pub(super) nodes: Vec<[Option<Word>; WIDTH]>,
     pub(super) counts: Counts,
 }
 
-/// How many references a child holds, and whether it is a node.
+/// A child of a node.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct Word(u32);
-
-impl Word {
-    fn new(len: usize, is_node: bool) -> Self {
-        Self((len as u32) << 1 | u32::from(is_node))
-    }
-
-    pub(super) fn len(self) -> usize {
-        (self.0 >> 1) as usize
-    }
-
-    pub(super) fn is_node(self) -> bool {
-        self.0 & 1 != 0
-    }
+pub(super) enum Word {
+    /// A node, which follows.
+    Node,
+    /// A range of references.
+    Leaf {
+        /// Index of the first.
+        first: u32,
+        /// How many there are.
+        len: u8,
+    },
 }
 
 /// How much a tree holds.
@@ -99,17 +96,27 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Sorts the references and builds a tree over them; there must be at least one reference.
-pub(super) fn build(references: &mut [Reference]) -> (Bounds3, Tree) {
-    let mut other = with_capacity(references.len());
-    let range = Range::all(Level::detect(), references, other.spare_capacity_mut());
+/// Sorts the first `len` references of `home` and builds a tree over them; there must be at least one. Where there is more room, triangles may be cut, and leaves
+/// have gaps between them.
+///
+/// # Safety
+/// These references must be initialised.
+pub(super) unsafe fn build(
+    home: &mut [MaybeUninit<Reference>],
+    len: usize,
+    positions: &Positions<'_>,
+) -> (Bounds3, Tree) {
+    let mut other = with_capacity(home.len());
+    // SAFETY: by the caller's promise.
+    let references = unsafe { Pair::new(home, len, other.spare_capacity_mut()) };
+    let range = Range::all(Context { level: Level::detect(), positions }, references);
     (range.bounds(), tree(range, 0))
 }
 
 /// A tree whose root is a node.
 fn tree(range: Range<'_>, depth: usize) -> Tree {
     if range.len() <= ALONE {
-        let mut bulk = Bulk { words: Vec::new(), first: range.first(), counts: Counts::default() };
+        let mut bulk = Bulk::default();
         bulk.grow(range, depth);
         return Tree::Bulk(bulk);
     }
@@ -117,8 +124,7 @@ fn tree(range: Range<'_>, depth: usize) -> Tree {
         let bounds = range.bounds();
         let mut counts = Counts::default();
         let tree = if range.fits_leaf() {
-            range.finish(&mut counts);
-            Tree::Leaf { first: range.first(), len: range.len() }
+            Tree::Leaf { first: range.finish(&mut counts), len: range.len() }
         } else {
             let tree = tree(range, depth + 1);
             counts += tree.counts();
@@ -135,14 +141,17 @@ fn tree(range: Range<'_>, depth: usize) -> Tree {
 impl Bulk {
     fn grow(&mut self, range: Range<'_>, depth: usize) {
         self.counts.nodes += 1;
-        let children = open(range, depth);
-        self.words.push(Word::new(children.len(), true));
-        self.words.extend(children.iter().map(|child| Word::new(child.len(), !child.fits_leaf())));
-        for mut child in children {
-            match child.fits_leaf() {
-                true => child.finish(&mut self.counts),
-                false => self.grow(child, depth + 1),
-            }
+        let at = self.nodes.len();
+        self.nodes.push([None; WIDTH]);
+        for (slot, mut child) in open(range, depth).into_iter().enumerate() {
+            let word = if child.fits_leaf() {
+                let len = child.len() as u8;
+                Word::Leaf { first: child.finish(&mut self.counts) as u32, len }
+            } else {
+                self.grow(child, depth + 1);
+                Word::Node
+            };
+            self.nodes[at][slot] = Some(word);
         }
     }
 }

@@ -2,63 +2,111 @@
 
 use std::mem::MaybeUninit;
 
-/// Items, and room for as many: splitting them moves them there.
+/// Items in a buffer that may be larger, and another of the same size: splitting them moves them there.
 pub(super) struct Pair<'a, T> {
-    items: &'a mut [T],
-    room: &'a mut [MaybeUninit<T>],
+    /// Where the items are, and the other.
+    sides: [&'a mut [MaybeUninit<T>]; 2],
+    /// Which part of the first holds items: initialised, always.
+    start: usize,
+    len: usize,
     /// Whether the items are in the buffer where they belong in the end.
     is_home: bool,
 }
 
 impl<'a, T: Copy> Pair<'a, T> {
-    /// `items` are where they belong.
-    pub(super) fn new(items: &'a mut [T], room: &'a mut [MaybeUninit<T>]) -> Self {
-        let room = &mut room[..items.len()];
-        Self { items, room, is_home: true }
+    /// The first `len` items of `home`.
+    ///
+    /// # Safety
+    /// They must be initialised.
+    pub(super) unsafe fn new(
+        home: &'a mut [MaybeUninit<T>],
+        len: usize,
+        room: &'a mut [MaybeUninit<T>],
+    ) -> Self {
+        assert!(len <= home.len());
+        let room = &mut room[..home.len()];
+        Self { sides: [home, room], start: 0, len, is_home: true }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// How many more items there is room for.
+    pub(super) fn slack(&self) -> usize {
+        self.sides[0].len() - self.len
     }
 
     pub(super) fn items(&self) -> &[T] {
-        self.items
+        let items = &self.sides[0][self.start..self.start + self.len];
+        // SAFETY: they are initialised.
+        unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), items.len()) }
     }
 
     pub(super) fn items_mut(&mut self) -> &mut [T] {
-        self.items
+        let items = &mut self.sides[0][self.start..self.start + self.len];
+        // SAFETY: they are initialised, and nothing but items can be written to them.
+        unsafe { std::slice::from_raw_parts_mut(items.as_mut_ptr().cast(), items.len()) }
     }
 
-    /// The items, and the room, of the same size.
+    /// The items, and the other side.
     pub(super) fn sides(&mut self) -> (&[T], &mut [MaybeUninit<T>]) {
-        (self.items, self.room)
+        let [items, room] = &mut self.sides;
+        let items = &items[self.start..self.start + self.len];
+        // SAFETY: they are initialised.
+        (unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), items.len()) }, room)
     }
 
-    /// The other side, after all of the room was written.
+    /// The other side, after items were written to it: `low` at its front and `high` at its back. `need` tells how much of the slack halves want.
     ///
     /// # Safety
-    /// All of the room must be initialised.
-    pub(super) unsafe fn swapped(self) -> Self {
-        let Self { items, room, is_home } = self;
-        // SAFETY: initialised items may be seen as ones that may not be: nothing but items is written to them.
-        let other = unsafe {
-            std::slice::from_raw_parts_mut(items.as_mut_ptr().cast::<MaybeUninit<T>>(), items.len())
-        };
-        // SAFETY: by the caller's promise all of them are initialised.
-        let items = unsafe { std::slice::from_raw_parts_mut(room.as_mut_ptr().cast::<T>(), room.len()) };
-        Self { items, room: other, is_home: !is_home }
-    }
-
-    /// The first `k` and the others.
-    pub(super) fn split_at(self, k: usize) -> [Self; 2] {
-        let Self { items, room, is_home } = self;
-        let (low, high) = items.split_at_mut(k);
-        let (low_room, high_room) = room.split_at_mut(k);
-        [Self { items: low, room: low_room, is_home }, Self { items: high, room: high_room, is_home }]
-    }
-
-    /// Brings the items home.
-    pub(super) fn finish(&mut self) {
-        if !self.is_home {
-            for (room, item) in self.room.iter_mut().zip(&*self.items) {
-                room.write(*item);
-            }
+    /// They must be initialised.
+    pub(super) unsafe fn swapped(self, low: usize, high: usize, need: impl Fn(&[T]) -> f32) -> [Self; 2] {
+        let Self { sides: [room, items], is_home, .. } = self;
+        let slack = items.len().checked_sub(low + high).expect("as much room as was written");
+        let half =
+            |len, sides: [&'a mut [MaybeUninit<T>]; 2], start| Self { sides, start, len, is_home: !is_home };
+        let mut cut = low;
+        if slack > 0 {
+            // They overlap in nothing but slack.
+            let needs = [(0, low), (items.len() - high, high)].map(|(start, len)| {
+                let part = &items[start..start + len];
+                // SAFETY: by the caller's promise.
+                need(unsafe { std::slice::from_raw_parts(part.as_ptr().cast(), len) })
+            });
+            // The cast makes 0 of what is not a number.
+            cut += ((slack as f32 * (needs[0] / (needs[0] + needs[1]))) as usize).min(slack);
         }
+        let (low_items, high_items) = items.split_at_mut(cut);
+        let (low_room, high_room) = room.split_at_mut(cut);
+        let start = high_items.len() - high;
+        [half(low, [low_items, low_room], 0), half(high, [high_items, high_room], start)]
+    }
+
+    /// The first `k` and the others, where they are.
+    pub(super) fn split_at(self, k: usize) -> [Self; 2] {
+        let Self { sides: [items, room], start, len, is_home } = self;
+        assert!(k <= len);
+        let (low, high) = items.split_at_mut(start + k);
+        let (low_room, high_room) = room.split_at_mut(start + k);
+        [
+            Self { sides: [low, low_room], start, len: k, is_home },
+            Self { sides: [high, high_room], start: 0, len: len - k, is_home },
+        ]
+    }
+
+    /// How many items the buffers can hold.
+    pub(super) fn capacity(&self) -> usize {
+        self.sides[0].len()
+    }
+
+    /// Brings the items home; returns how many places lie before them.
+    pub(super) fn finish(&mut self) -> usize {
+        if !self.is_home {
+            let part = self.start..self.start + self.len;
+            let [items, home] = &mut self.sides;
+            home[part.clone()].copy_from_slice(&items[part]);
+        }
+        self.start
     }
 }

@@ -6,8 +6,12 @@ use crate::bvh::node::LeafPrimitive;
 use rayon::prelude::*;
 use tenfold_math::{Bounds3, Vec3, ops};
 
-/// At most this share of the triangles' number is added in parts.
-const EXTRA: f32 = 0.25;
+/// Where more cuts than this share of the triangles' number are wanted, splits of space do better.
+const MANY: f32 = 0.05;
+/// Then only so many parts are added now,
+const EXTRA: f32 = 0.1;
+/// and at most so many by the splits.
+const LATER: f32 = 0.25;
 /// A triangle whose priority is this many times the mean is cut once: meshes of alike triangles stay whole.
 const OUTSTANDING: f32 = 2.0;
 /// Cuts of one triangle.
@@ -70,11 +74,12 @@ fn cuts(priority: f32, scale: f32) -> usize {
     (priority * scale).min(MOST) as usize
 }
 
-/// Cuts triangles; their parts follow behind the references. The result does not depend on the number of threads.
+/// Cuts triangles; their parts follow behind the references. Returns how many more parts splits of space may add. The result does not depend on the
+/// number of threads.
 pub(crate) fn presplit(
     references: &mut Vec<Reference>,
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
-) {
+) -> usize {
     let corners = |r: &Reference| match r.target() {
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
@@ -105,9 +110,14 @@ pub(crate) fn presplit(
         .fold((0.0, 0), |(sum, count), p| (sum + f64::from(octree.priority(p)), count + 1));
     let mean = (sum / f64::from(count.max(1))) as f32;
     let count = |scale: f32| -> usize { large.iter().map(|&(_, p)| cuts(p, scale)).sum() };
-    let budget = (EXTRA * references.len() as f32) as usize;
     let mut scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
-    if count(scale) > budget {
+    let share = |part: f32| (part * references.len() as f32) as usize;
+    let wanted = count(scale);
+    let (budget, later) = match wanted > share(MANY) {
+        true => (share(EXTRA), share(LATER)),
+        false => (wanted, 0),
+    };
+    if wanted > budget {
         let (mut low, mut high) = (0.0, scale);
         for _ in 0..16 {
             scale = 0.5 * (low + high);
@@ -115,23 +125,32 @@ pub(crate) fn presplit(
         }
         scale = low;
     }
-    let cut = |&(index, priority): &(u32, f32)| {
-        let reference = &references[index as usize];
+    // All parts of a chunk, with what they are parts of.
+    let cut = |chunk: &[(u32, f32)]| {
         let mut parts = Vec::new();
-        if let (Some(corners), cuts @ 1..) = (corners(reference), cuts(priority, scale)) {
-            let size = Bounds3::around(corners).diagonal().max_element();
-            octree.cut(&corners, cuts, &mut |b| parts.push(reference.with_bounds(padded(b, size))));
+        for &(index, priority) in chunk {
+            let reference = &references[index as usize];
+            if let (Some(corners), cuts @ 1..) = (corners(reference), cuts(priority, scale)) {
+                let size = Bounds3::around(corners).diagonal().max_element();
+                octree.cut(&corners, cuts, &mut |b| {
+                    parts.push((index, reference.with_bounds(padded(b, size))))
+                });
+            }
         }
-        (index, parts)
+        parts
     };
-    let parts: Vec<(u32, Vec<Reference>)> =
-        large.par_iter().map(cut).filter(|(_, parts)| !parts.is_empty()).collect();
-    references.reserve_exact(parts.iter().map(|(_, parts)| parts.len() - 1).sum());
-    for (index, mut parts) in parts {
-        // One of them takes the place of the whole.
-        references[index as usize] = parts.swap_remove(0);
-        references.extend(parts);
+    let parts: Vec<Vec<(u32, Reference)>> = large.par_chunks(CHUNK).map(cut).collect();
+    drop(large);
+    references.reserve_exact(parts.iter().map(Vec::len).sum::<usize>() + later);
+    let mut last = None;
+    for (index, part) in parts.into_iter().flatten() {
+        // The first of them takes the place of the whole.
+        match last.replace(index) == Some(index) {
+            true => references.push(part),
+            false => references[index as usize] = part,
+        }
     }
+    later
 }
 
 impl Octree {

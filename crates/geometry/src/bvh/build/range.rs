@@ -1,24 +1,39 @@
 //! References side by side, and how they are split.
 
 use super::{
-    Counts, MaybeUninit,
-    bins::{around, split},
+    Counts,
+    bins::{self, around},
     grid::{self, Top},
     hull::Hull,
     pair::Pair,
     reference::{Reference, Target},
+    spatial::{self, Positions},
 };
 use crate::bvh::{node::LANES, traverse::Level};
 use tenfold_math::Bounds3;
 
-/// More references are sorted by a grid first.
+/// More references are sorted by a grid first, where none are to be cut.
 const GRID: usize = 1 << 16;
+/// Splits of space are looked for where halves overlap by this share of the area around both.
+const OVERLAP: f32 = 0.3;
+
+/// How many cuts some references are worth: large ones more than small ones, but not by as much as they are larger.
+fn need(references: &[Reference]) -> f32 {
+    references.iter().map(|r| r.hull().half_area().sqrt()).sum()
+}
+
+/// What is the same for all ranges.
+#[derive(Copy, Clone)]
+pub(super) struct Context<'a> {
+    pub(super) level: Level,
+    pub(super) positions: &'a Positions<'a>,
+}
 
 /// Some references and what is around them.
 pub(super) struct Range<'a> {
-    level: Level,
+    context: Context<'a>,
     references: Pair<'a, Reference>,
-    /// Index of the first of them among all.
+    /// Where their room begins among all.
     first: usize,
     bounds: Hull,
     /// Around their doubled middles; `None` where that is not known yet.
@@ -29,22 +44,13 @@ pub(super) struct Range<'a> {
 
 impl<'a> Range<'a> {
     /// All references, with a buffer of the same size.
-    pub(super) fn all(
-        level: Level,
-        references: &'a mut [Reference],
-        room: &'a mut [MaybeUninit<Reference>],
-    ) -> Self {
-        let [bounds, middles] = grid::around_all(level, references);
-        let references = Pair::new(references, room);
-        Self { level, references, first: 0, bounds, middles: Some(middles), top: None }
+    pub(super) fn all(context: Context<'a>, references: Pair<'a, Reference>) -> Self {
+        let [bounds, middles] = grid::around_all(context.level, references.items());
+        Self { context, references, first: 0, bounds, middles: Some(middles), top: None }
     }
 
     pub(super) fn len(&self) -> usize {
-        self.references.items().len()
-    }
-
-    pub(super) fn first(&self) -> usize {
-        self.first
+        self.references.len()
     }
 
     pub(super) fn bounds(&self) -> Bounds3 {
@@ -60,61 +66,91 @@ impl<'a> Range<'a> {
         self.len() <= 1 || (self.len() <= LANES && self.references.items().iter().all(Reference::is_triangle))
     }
 
-    /// Brings the references of a leaf to where they belong, and counts it.
-    pub(super) fn finish(&mut self, counts: &mut Counts) {
-        self.references.finish();
+    /// Brings the references of a leaf to where they belong, and counts it. Returns the index of the first.
+    pub(super) fn finish(&mut self, counts: &mut Counts) -> usize {
         match self.references.items().first().map(Reference::target) {
             Some(Target::Triangle(_)) => counts.blocks += 1,
             Some(Target::Shape(_)) => counts.shapes += 1,
             Some(Target::Placement(_)) | None => {}
         }
+        self.first + self.references.finish()
     }
 
     /// Splits by the heuristic; in the middle where that finds no plane, or where it must (`halve`).
-    pub(super) fn split(self, halve: bool) -> [Self; 2] {
-        let Self { level, mut references, first, bounds, middles, top } = self;
+    pub(super) fn split(mut self, halve: bool) -> [Self; 2] {
         if halve {
-            return Self::halve(level, references, first, &bounds);
+            return self.halve();
         }
-        if let Some(halves) = top.and_then(|top| top.halves) {
-            return Self::split_top(level, references, first, halves);
+        if let Some(halves) = self.top.take().and_then(|top| top.halves) {
+            return self.split_top(halves);
         }
-        let middles = middles.unwrap_or_else(|| around(level, references.items())[1]);
-        if references.items().len() > GRID {
-            let (from, to) = references.sides();
-            if let Some(halves) = grid::sort(level, from, &middles, to).and_then(|top| top.halves) {
+        let level = self.context.level;
+        let middles = self.middles.unwrap_or_else(|| around(level, self.references.items())[1]);
+        if self.len() > GRID && self.references.slack() == 0 {
+            let (from, to) = self.references.sides();
+            if let Some([low, high]) = grid::sort(level, from, &middles, to).and_then(|top| top.halves) {
                 // SAFETY: the grid has sorted all references into the room.
-                let references = unsafe { references.swapped() };
-                return Self::split_top(level, references, first, halves);
+                let [references, _] = unsafe { self.references.swapped(low.len + high.len, 0, need) };
+                return Self { references, ..self }.split_top([low, high]);
             }
         }
-        match split(level, references, &middles) {
-            Ok([low, high]) => {
-                let next = first + low.items.items().len();
-                [(low, first), (high, next)].map(|(half, first)| Self {
-                    level,
-                    references: half.items,
-                    first,
-                    bounds: half.bounds,
-                    middles: Some(half.middles),
-                    top: None,
-                })
-            }
-            Err(references) => Self::halve(level, references, first, &bounds),
+        let halves = bins::sort(level, &mut self.references, &middles);
+        if let Some([low, high]) = self.sort_space(halves.as_ref()) {
+            // SAFETY: so many were written.
+            let pairs = unsafe { self.references.swapped(low, high, need) };
+            return Self::pair(self.context, self.first, pairs, None);
         }
+        let Some(halves) = halves else { return self.halve() };
+        let n = self.len();
+        // SAFETY: all of them were written.
+        let pairs = unsafe { self.references.swapped(halves.low, n - halves.low, need) };
+        let [low_bounds, high_bounds] = halves.bounds;
+        let [low_middles, high_middles] = halves.middles;
+        let around = [[low_bounds, low_middles], [high_bounds, high_middles]];
+        Self::pair(self.context, self.first, pairs, Some(around))
+    }
+
+    /// Two ranges, and what is around them and their doubled middles where that is known.
+    fn pair(
+        context: Context<'a>,
+        first: usize,
+        [low, high]: [Pair<'a, Reference>; 2],
+        hulls: Option<[[Hull; 2]; 2]>,
+    ) -> [Self; 2] {
+        let next = first + low.capacity();
+        let level = context.level;
+        let [low_hulls, high_hulls] =
+            hulls.unwrap_or_else(|| [around(level, low.items()), around(level, high.items())]);
+        [(low, first, low_hulls), (high, next, high_hulls)].map(|(references, first, [bounds, middles])| {
+            Self { context, references, first, bounds, middles: Some(middles), top: None }
+        })
+    }
+
+    /// Splits space where that is better than `halves`, into which the references were sorted: sorts them again. Returns how many there are in both halves.
+    fn sort_space(&mut self, halves: Option<&bins::Halves>) -> Option<[usize; 2]> {
+        if self.references.slack() == 0 || self.len() <= 2 * LANES {
+            return None;
+        }
+        if let Some(halves) = halves {
+            let overlap = halves.bounds[0].intersection(&halves.bounds[1]);
+            if overlap.is_none_or(|overlap| !(overlap.half_area() > OVERLAP * self.half_area())) {
+                return None;
+            }
+        }
+        let (references, room) = self.references.sides();
+        let positions = self.context.positions;
+        let plane = spatial::find(references, &self.bounds, positions)?;
+        (halves.is_none_or(|halves| plane.cost < halves.cost))
+            .then(|| spatial::sort(references, &plane, positions, room))
     }
 
     /// Splits where the grid did.
-    fn split_top(
-        level: Level,
-        references: Pair<'a, Reference>,
-        first: usize,
-        [low_top, high_top]: [Box<Top>; 2],
-    ) -> [Self; 2] {
+    fn split_top(self, [low_top, high_top]: [Box<Top>; 2]) -> [Self; 2] {
         let k = low_top.len;
+        let Self { context, references, first, .. } = self;
         let [low, high] = references.split_at(k);
         [(low, first, low_top), (high, first + k, high_top)].map(|(references, first, top)| Self {
-            level,
+            context,
             references,
             first,
             bounds: top.bounds,
@@ -124,15 +160,12 @@ impl<'a> Range<'a> {
     }
 
     /// Splits in the middle.
-    fn halve(level: Level, mut references: Pair<'a, Reference>, first: usize, bounds: &Hull) -> [Self; 2] {
+    fn halve(self) -> [Self; 2] {
+        let Self { context, mut references, first, bounds, .. } = self;
         let axis = bounds.bounds().longest_axis();
-        let k = references.items().len() / 2;
+        let k = references.len() / 2;
         // A total order: the result must not depend on the algorithm's whims.
         references.items_mut().select_nth_unstable_by(k, |a, b| a.cmp_along(b, axis));
-        let [low, high] = references.split_at(k);
-        [(low, first), (high, first + k)].map(|(references, first)| {
-            let [bounds, middles] = around(level, references.items());
-            Self { level, references, first, bounds, middles: Some(middles), top: None }
-        })
+        Self::pair(context, first, references.split_at(k), None)
     }
 }
