@@ -256,10 +256,10 @@ impl<'a> PathTracer<'a> {
     ) {
         let Strategies { light: strategy, combine, .. } = self.strategies;
         let lights = &self.scene.lights;
-        let u_choice = if lights.has_choice() {
-            sample.sampler.get_1d(Dimension::light_choice(path.bounce))
-        } else {
-            0.0
+        let u_choice = match lights.sampled(strategy) {
+            0 => return,
+            1 => 0.0,
+            _ => sample.sampler.get_1d(Dimension::light_choice(path.bounce)),
         };
         let u = sample.sampler.get_2d(Dimension::light_point(path.bounce));
         let light = lights.sample(strategy, from, u_choice, u, sample.wavelengths);

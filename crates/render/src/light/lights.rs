@@ -98,10 +98,10 @@ impl Lights {
         self.all.is_empty()
     }
 
-    /// Whether there is more than one light, so that a number has to choose.
+    /// How many lights [`Lights::sample`] by `strategy` chooses among: with one there is nothing to choose, with none nothing to sample.
     #[inline]
-    pub fn has_choice(&self) -> bool {
-        self.all.len() > 1
+    pub fn sampled(&self, strategy: LightStrategy) -> usize {
+        self.tree.len() + self.far(strategy).len()
     }
 
     /// The light of an id.

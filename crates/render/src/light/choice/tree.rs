@@ -51,6 +51,8 @@ pub(in crate::light) struct LightTree {
     parents: Vec<Place>,
     /// Per light: where it is.
     places: Vec<Place>,
+    /// How many lights it holds.
+    len: usize,
     /// The light, where there is but one.
     only: Option<u32>,
 }
@@ -81,7 +83,8 @@ impl LightTree {
     /// A tree over `entries`, whose lights have indices below `lights`. Takes O(n log n); `entries` are reordered.
     pub(in crate::light) fn build(entries: &mut [Entry], lights: usize) -> Self {
         let only = if let [entry] = entries { Some(entry.light) } else { None };
-        let mut tree = Self { places: vec![Place::NOWHERE; lights], only, ..Self::default() };
+        let mut tree =
+            Self { places: vec![Place::NOWHERE; lights], len: entries.len(), only, ..Self::default() };
         if !entries.is_empty() {
             tree.fill(Place::NOWHERE, entries, 0);
         }
@@ -108,6 +111,12 @@ impl LightTree {
         }
         self.nodes[at] = Node { clusters: Clusters::new(&all), links };
         all.into_iter().reduce(LightBounds::union).unwrap_or(entries[0].bounds)
+    }
+
+    /// How many lights it holds.
+    #[inline]
+    pub(in crate::light) fn len(&self) -> usize {
+        self.len
     }
 
     /// Whether `light` is in the tree.

@@ -138,6 +138,8 @@ fn even_skies_are_left_to_scattering() {
         (0..without.len()).for_each(|i| assert_eq!(pmf(&with, 1 + i), pmf(&without, i)));
         assert!(with.pmf(ByTexture, &from, Id::new(0)) > 0.0);
     }
+    assert_eq!(with.sampled(Complementary), without.sampled(Complementary));
+    assert_eq!(with.sampled(ByTexture), without.sampled(ByTexture) + 1);
 }
 
 /// Σ of all lights' irradiance (from both sides), and the estimates by choosing one.
