@@ -276,7 +276,12 @@ fn of_hits_at_one_distance_that_of_the_first_primitive_counts() {
 
 #[test]
 fn triangles_that_are_cut_are_found_along_their_whole_length() {
-    // Long slanted ones among small ones are what the builder cuts.
+    // Long slanted ones among small ones are what the builder cuts: a few before the tree is built, many meanwhile.
+    find_rods(2);
+    find_rods(150);
+}
+
+fn find_rods(count: usize) {
     let mut rng = Rng::new(17);
     let mut parts = MeshParts::default();
     let mut add = |corners: [Vec3; 3]| {
@@ -287,7 +292,7 @@ fn triangles_that_are_cut_are_found_along_their_whole_length() {
         let p = in_box(&mut rng, 1.0);
         add([p, p + in_box(&mut rng, 0.01), p + in_box(&mut rng, 0.01)]);
     }
-    let rods: Vec<[Vec3; 3]> = (0..150)
+    let rods: Vec<[Vec3; 3]> = (0..count)
         .map(|_| {
             let (a, b) = (in_box(&mut rng, 1.0), in_box(&mut rng, 1.0));
             [a, b, b + in_box(&mut rng, 0.01)]
@@ -299,7 +304,7 @@ fn triangles_that_are_cut_are_found_along_their_whole_length() {
         WorldDesc { geometries: vec![still(Shape::Triangles(Arc::new(mesh)), 0)], ..WorldDesc::default() };
     let world = World::build(desc.clone()).unwrap();
     let portable = World::build(desc.clone()).unwrap().portable();
-    let mut hits = 0;
+    let mut hits = 0usize;
     for [a, b, c] in rods {
         for _ in 0..10 {
             let s = rng.f32();
@@ -309,8 +314,8 @@ fn triangles_that_are_cut_are_found_along_their_whole_length() {
             let hit = world.intersect(&ray, f32::INFINITY, |_| true);
             assert_eq!(hit.map(|h| (h.t, h.primitive)), brute_force(&desc, &ray, f32::INFINITY), "{ray:?}");
             assert_eq!(portable.intersect(&ray, f32::INFINITY, |_| true), hit);
-            hits += u32::from(hit.is_some());
+            hits += usize::from(hit.is_some());
         }
     }
-    assert!(hits > 1200, "{hits}");
+    assert!(hits >= 8 * count, "{hits}");
 }

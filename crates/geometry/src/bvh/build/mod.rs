@@ -1,4 +1,4 @@
-//! Building: the longest triangles are cut first, then the tree grows top-down, straight to eight children.
+//! Building: the tree grows top-down, straight to eight children. Long triangles are cut, before that where they are few, meanwhile where they are many.
 
 mod bins;
 mod grid;

@@ -1,4 +1,4 @@
-//! Cutting long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
+//! Cutting a few long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
 
 use super::hull::Hull;
 use super::reference::{Reference, Target, padded};
@@ -6,19 +6,17 @@ use crate::bvh::node::LeafPrimitive;
 use rayon::prelude::*;
 use tenfold_math::{Bounds3, Vec3, ops};
 
-/// Where more cuts than this share of the triangles' number are wanted, splits of space do better.
+/// Where more cuts than this share of the triangles' number are wanted, splits of space do better than cuts.
 const MANY: f32 = 0.05;
-/// Then only so many parts are added now,
-const EXTRA: f32 = 0.1;
-/// and at most so many by the splits.
-const LATER: f32 = 0.25;
+/// They may add this share.
+const LATER: f32 = 0.3;
 /// A triangle whose priority is this many times the mean is cut once: meshes of alike triangles stay whole.
 const OUTSTANDING: f32 = 2.0;
 /// Cuts of one triangle.
 const MOST: f32 = 63.0;
 /// The cutting planes are those of an octree of this depth.
 const LEVELS: u32 = 20;
-/// Boxes of this many times the mean area are large: only they are cut.
+/// Boxes are large, and looked at for cuts, whose area is this many times that of the mean root of an area.
 const LARGE: f32 = 4.0;
 /// About so many triangles tell the mean priority.
 const SAMPLE: usize = 1 << 12;
@@ -74,8 +72,8 @@ fn cuts(priority: f32, scale: f32) -> usize {
     (priority * scale).min(MOST) as usize
 }
 
-/// Cuts triangles; their parts follow behind the references. Returns how many more parts splits of space may add. The result does not depend on the
-/// number of threads.
+/// Cuts triangles where few are long; their parts follow behind the references. Where many are, returns how many parts splits of space may add
+/// instead. The result does not depend on the number of threads.
 pub(crate) fn presplit(
     references: &mut Vec<Reference>,
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
@@ -109,21 +107,10 @@ pub(crate) fn presplit(
         .filter_map(corners)
         .fold((0.0, 0), |(sum, count), p| (sum + f64::from(octree.priority(p)), count + 1));
     let mean = (sum / f64::from(count.max(1))) as f32;
-    let count = |scale: f32| -> usize { large.iter().map(|&(_, p)| cuts(p, scale)).sum() };
-    let mut scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
+    let scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
     let share = |part: f32| (part * references.len() as f32) as usize;
-    let wanted = count(scale);
-    let (budget, later) = match wanted > share(MANY) {
-        true => (share(EXTRA), share(LATER)),
-        false => (wanted, 0),
-    };
-    if wanted > budget {
-        let (mut low, mut high) = (0.0, scale);
-        for _ in 0..16 {
-            scale = 0.5 * (low + high);
-            if count(scale) > budget { high = scale } else { low = scale }
-        }
-        scale = low;
+    if large.iter().map(|&(_, priority)| cuts(priority, scale)).sum::<usize>() > share(MANY) {
+        return share(LATER);
     }
     // All parts of a chunk, with what they are parts of.
     let cut = |chunk: &[(u32, f32)]| {
@@ -141,7 +128,7 @@ pub(crate) fn presplit(
     };
     let parts: Vec<Vec<(u32, Reference)>> = large.par_chunks(CHUNK).map(cut).collect();
     drop(large);
-    references.reserve_exact(parts.iter().map(Vec::len).sum::<usize>() + later);
+    references.reserve_exact(parts.iter().map(Vec::len).sum::<usize>());
     let mut last = None;
     for (index, part) in parts.into_iter().flatten() {
         // The first of them takes the place of the whole.
@@ -150,7 +137,7 @@ pub(crate) fn presplit(
             false => references[index as usize] = part,
         }
     }
-    later
+    0
 }
 
 impl Octree {
