@@ -7,6 +7,8 @@
 
 mod trigonometry;
 
+pub use trigonometry::sin_cos_of_small;
+
 use glam::Vec4;
 
 /// A float with elementary functions: `f32` and `f64`.

@@ -14,7 +14,7 @@ pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
     // Selected, not branched: which way is as good as random.
     let is_wide = p.x.abs() > p.y.abs();
     let (r, across) = if is_wide { (p.x, p.y) } else { (p.y, p.x) };
-    let (s, c) = ops::sin_cos(FRAC_PI_4 * (across / r));
+    let (s, c) = ops::sin_cos_of_small(FRAC_PI_4 * (across / r));
     r * if is_wide { Vec2::new(c, s) } else { Vec2::new(s, c) }
 }
 

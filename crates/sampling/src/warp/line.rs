@@ -10,9 +10,14 @@ pub fn sample_linear(u: f32, a: f32, b: f32) -> f32 {
         return u;
     }
     // Scaled to a sum of one, so that squares neither overflow nor vanish.
-    let (a, b) = (a / sum, b / sum);
+    sample_scaled(u, a / sum, b / sum)
+}
+
+/// [`sample_linear`] for values whose squares are finite.
+#[inline]
+fn sample_scaled(u: f32, a: f32, b: f32) -> f32 {
     let denominator = a + lerp(u, sqr(a), sqr(b)).sqrt();
-    if denominator > 0.0 { (u / denominator).min(ONE_MINUS_EPSILON) } else { 0.0 }
+    if denominator > 0.0 { (u * (a + b) / denominator).min(ONE_MINUS_EPSILON) } else { 0.0 }
 }
 
 /// Density of [`sample_linear`].
@@ -37,8 +42,13 @@ pub fn invert_linear(x: f32, a: f32, b: f32) -> f32 {
 /// (0, 0), (1, 0), (0, 1), (1, 1) are the weights, none negative (pbrt book §2.4.3).
 #[inline]
 pub fn sample_bilinear(u: Vec2, w: [f32; 4]) -> Vec2 {
-    let y = sample_linear(u.y, w[0] + w[1], w[2] + w[3]);
-    Vec2::new(sample_linear(u.x, lerp(y, w[0], w[2]), lerp(y, w[1], w[3])), y)
+    let sum = w[0] + w[1] + w[2] + w[3];
+    if sum <= 0.0 {
+        return u;
+    }
+    let w = [w[0] / sum, w[1] / sum, w[2] / sum, w[3] / sum];
+    let y = sample_scaled(u.y, w[0] + w[1], w[2] + w[3]);
+    Vec2::new(sample_scaled(u.x, lerp(y, w[0], w[2]), lerp(y, w[1], w[3])), y)
 }
 
 /// Density of [`sample_bilinear`] per unit of area.
