@@ -11,12 +11,13 @@ const LANES: usize = 16;
 const SAMPLES: usize = 64;
 /// Vertices of a path whose numbers have room: few paths go further.
 const BOUNCES: usize = 8;
+const GROUPS: usize = SAMPLES / LANES;
 const VARIABLES: usize = Variable::ALL.len();
 /// Dimensions whose numbers have room.
 const SLOTS: usize = BOUNCES * VARIABLES;
 
 /// The numbers of a dimension, in groups that are computed together.
-type Row = [[Cell<Vec2>; LANES]; SAMPLES / LANES];
+type Row = [[Cell<Vec2>; LANES]; GROUPS];
 
 /// Room for the numbers of the samples of one pixel that share a block, to be used again for block after block.
 ///
@@ -27,7 +28,8 @@ type Row = [[Cell<Vec2>; LANES]; SAMPLES / LANES];
 pub struct SampleRoom {
     /// The block: any of its samples.
     block: Option<SobolSample>,
-    /// Per dimension, for which lanes the numbers are known, one bit for each [`LANES`] samples.
+    /// Per dimension, of which groups of [`LANES`] samples the numbers are known, a bit for each. Four bits above tell which groups
+    /// have been asked for: one sample alone may be all that ever asks.
     known: [Cell<u8>; SLOTS],
     numbers: Box<[Row; SLOTS]>,
 }
@@ -72,10 +74,15 @@ impl SampleRoom {
     fn compute(&self, place: u32, dimension: Dimension) -> Vec2 {
         let Some(block) = &self.block else { return Vec2::ZERO };
         let slot = usize::from(dimension.bounce) * VARIABLES + dimension.variable as usize;
-        let Some(known) = self.known.get(slot) else {
-            return block.at_place(place).get_2d(dimension.key());
-        };
         let (group, lane) = (place as usize / LANES, place as usize % LANES);
+        let asked = 1 << (GROUPS + group);
+        let known = match self.known.get(slot) {
+            Some(known) if known.get() & asked != 0 => known,
+            slot => {
+                slot.inspect(|known| known.set(known.get() | asked));
+                return block.at_place(place).get_2d(dimension.key());
+            }
+        };
         let [x, y] = lanes(block, dimension.key(), (group * LANES) as u32);
         let row = &self.numbers[slot][group];
         row.iter().zip(x.into_iter().zip(y)).for_each(|(cell, (x, y))| cell.set(Vec2::new(x, y)));

@@ -132,12 +132,16 @@ impl SobolSample {
                 *place = if *place >= self.size { scattered(*place) } else { *place };
             }
         }
+        // The place is in the upper word of the index, so the lower one is the same for all.
+        let above = (self.mirrored >> 32) as u32;
+        let (low, shuffled) = shuffle_above(self.mirrored as u32, h, self.digits);
+        let carried = (u64::from(low) << self.shift >> 32) as u32;
+        let path_bits = (low << self.shift).reverse_bits();
         let (mut x, mut y) = ([0; LANES], [0; LANES]);
         for (place, (x, y)) in places.iter().zip(x.iter_mut().zip(&mut y)) {
-            let place = u64::from(place.reverse_bits()) << (32 - self.shift);
-            let index = (shuffle(self.mirrored | place, h, self.digits) << self.shift).reverse_bits();
-            *x = index as u32;
-            *y = second(index);
+            let high = shuffled(above | place.reverse_bits() >> self.shift);
+            *x = (high << self.shift | carried).reverse_bits();
+            *y = second(u64::from(path_bits ^ *x));
         }
         (x, y)
     }
@@ -209,6 +213,41 @@ fn shuffle(x: u64, h: u64, digits: u64) -> u64 {
     let x = x ^ x.wrapping_mul(0xe703_7ed1_a0b4_28da);
     let x = x ^ (x >> 1 & x.wrapping_mul(0x1b03_7387_12fa_d5c4).wrapping_add(h >> 7) & digits);
     x ^ x.wrapping_mul(0xd1b5_4a32_d192_ed02)
+}
+
+/// What [`shuffle`] makes of the upper words of indices that share the lower one, `low`: its own low word, and a function of the upper ones
+/// that has nothing to do with more than 32 bits.
+#[inline(always)]
+fn shuffle_above(low: u32, h: u64, digits: u64) -> (u32, impl Fn(u32) -> u32) {
+    let g = h.rotate_left(32).wrapping_mul(0x9fb2_1c65_1e98_df25);
+    let high = |x: u64| (x >> 32) as u32;
+    // Step by step, with what the lower word carries into the upper one. No digit begins with its last bit, so it needs none from above.
+    let product = |x: u32, c: u64| u64::from(x).wrapping_mul(c);
+    let sheared = |x: u32, by: u64| x ^ (x >> 1 & by as u32 & digits as u32);
+    let sum = u64::from(low) + u64::from(h as u32);
+    let (x1, add) = (sum as u32, high(h).wrapping_add(high(sum)));
+    let by1 = product(x1, 0xa3b1_9535_4a39_b70c);
+    let x2 = x1 ^ by1 as u32;
+    let by2 = product(x2, 0x8cb9_2ba7_2f3d_8dd4).wrapping_add(g);
+    let by3 = product(sheared(x2, by2), g | 1);
+    let x4 = by3 as u32;
+    let by4 = product(x4, 0xe703_7ed1_a0b4_28da);
+    let x5 = x4 ^ by4 as u32;
+    let by5 = product(x5, 0x1b03_7387_12fa_d5c4).wrapping_add(h >> 7);
+    let x6 = sheared(x5, by5);
+    let by6 = product(x6, 0xd1b5_4a32_d192_ed02);
+    let digits = high(digits);
+    let upper = move |x: u32| {
+        let times = |x: u32, c: u32, carried: u64| x.wrapping_mul(c).wrapping_add(high(carried));
+        let x = x.wrapping_add(add);
+        let x = x ^ times(x, 0x4a39_b70c, by1);
+        let x = x ^ (x >> 1 & times(x, 0x2f3d_8dd4, by2) & digits);
+        let x = times(x, g as u32 | 1, by3);
+        let x = x ^ times(x, 0xa0b4_28da, by4);
+        let x = x ^ (x >> 1 & times(x, 0x12fa_d5c4, by5) & digits);
+        x ^ times(x, 0xd192_ed02, by6)
+    };
+    (x6 ^ by6 as u32, upper)
 }
 
 /// Owen-scrambles the fraction whose *lowest* bit is the first (Laine and Karras 2011, with the constants
@@ -313,6 +352,16 @@ mod tests {
                     assert!(!std::mem::replace(&mut seen[y as usize], true));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn words_are_shuffled_as_the_whole() {
+        for (seed, digits) in (1..500).flat_map(|s| [(s, 0x5555_5555_5555_5555), (s, 0x0155_5555_5555)]) {
+            let (x, h) = (mix_bits(seed), mix_bits(seed + 1000));
+            let (low, above) = shuffle_above(x as u32, h, digits);
+            let whole = u64::from(above((x >> 32) as u32)) << 32 | u64::from(low);
+            assert_eq!(whole, shuffle(x, h, digits));
         }
     }
 
