@@ -101,14 +101,28 @@ impl<'a> BilinearPatch<'a> {
         let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let (e00, e11) = (p01 - p00, p11 - p10);
-        let a = (p10 - p00).cross(d).dot(e11 - e00);
-        let c = (p00 - o).cross(d).dot(e00);
-        let b = (p10 - o).cross(d).dot(e11) - (a + c);
         // Nearer than rounding can tell from the origin's own surface.
         let t_min = || {
             let size = corners.iter().fold(ray.origin.abs(), |m, p| m.max(p.abs())).max_element();
             1e-13 * f64::from(size) / d.length()
         };
+        let hit_at = |t: f64, u: f64, v: f64| {
+            let inside = |x: f64| (-SLACK..=1.0 + SLACK).contains(&x);
+            let is_hit = inside(u) && inside(v) && t > 0.0 && (t as f32) < t_max && t > t_min();
+            let clamped = |x: f64| (x as f32).clamp(0.0, 1.0);
+            is_hit.then(|| ShapeHit { t: t as f32, u: clamped(u), v: clamped(v) })
+        };
+        if e00 == e11 {
+            // A parallelogram: Cramer's rule for p00 + u · across + v · e00 = o + t · d.
+            let (across, from) = (p10 - p00, o - p00);
+            let (n, q) = (across.cross(e00), from.cross(d));
+            let scale = 1.0 / d.dot(n);
+            let hit = hit_at(-from.dot(n) * scale, -e00.dot(q) * scale, across.dot(q) * scale);
+            return hit.filter(|hit| accept(*hit));
+        }
+        let a = (p10 - p00).cross(d).dot(e11 - e00);
+        let c = (p00 - o).cross(d).dot(e00);
+        let b = (p10 - o).cross(d).dot(e11) - (a + c);
         let hit = |u: f64| {
             // Also leaves out NaN.
             if !(-SLACK..=1.0 + SLACK).contains(&u) {
@@ -120,10 +134,7 @@ impl<'a> BilinearPatch<'a> {
             let perpendicular = d.cross(across);
             let scale = 1.0 / perpendicular.length_squared();
             let v = delta.cross(d).dot(perpendicular) * scale;
-            let t = delta.cross(across).dot(perpendicular) * scale;
-            let is_hit = (-SLACK..=1.0 + SLACK).contains(&v) && t > 0.0 && (t as f32) < t_max && t > t_min();
-            let inside = |x: f64| (x as f32).clamp(0.0, 1.0);
-            is_hit.then(|| ShapeHit { t: t as f32, u: inside(u), v: inside(v) })
+            hit_at(delta.cross(across).dot(perpendicular) * scale, u, v)
         };
         let mut hits = quadratic_roots(a, b, c).map(hit);
         if let [Some(first), Some(second)] = hits

@@ -415,3 +415,39 @@ fn bad_parts_are_refused() {
     let far = MeshParts { positions: vec![Vec3::ZERO, 1e20 * Vec3::X, Vec3::Y], ..good };
     assert!(matches!(TriangleMesh::new(far, &huge, false), Err(MeshError::NotFinite { .. })));
 }
+
+#[test]
+fn parallelograms_are_hit_where_they_are() {
+    let mut rng = Rng::new(77);
+    for _ in 0..200 {
+        // Whole numbers, whose differences are exact.
+        let whole = |rng: &mut Rng| in_box(rng, 8.0).round();
+        let (corner, across, along) = (whole(&mut rng), whole(&mut rng), whole(&mut rng));
+        let n = across.cross(along);
+        if n.length() < 1.0 {
+            continue;
+        }
+        let corners = [corner, corner + across, corner + along, corner + across + along];
+        let parts =
+            MeshParts { positions: corners.to_vec(), indices: vec![0, 1, 2, 3], ..MeshParts::default() };
+        let mesh = BilinearMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+        let shape = Shape::Patches(Arc::new(mesh));
+        for _ in 0..50 {
+            let place = 1.5 * Vec2::new(rng.f32(), rng.f32()) - Vec2::splat(0.25);
+            let p = corner + place.x * across + place.y * along;
+            let origin = p + whole(&mut rng) + 0.5 * n.normalize();
+            let ray = Ray::new(origin, 0.5 * (p - origin), 0.0);
+            let hit = shape.primitive(0).intersect(&ray, f32::INFINITY, |_| true);
+            let steep = (p - origin).normalize().dot(n.normalize()).abs() > 0.02;
+            let margin = place.min(Vec2::ONE - place).min_element();
+            match hit {
+                _ if !steep || margin.abs() < 1e-4 => {}
+                Some(hit) => {
+                    assert!(margin > 0.0);
+                    assert!((hit.t - 2.0).abs() < 1e-3 && (Vec2::new(hit.u, hit.v) - place).length() < 1e-3);
+                }
+                None => assert!(margin < 0.0, "{corners:?} {place}"),
+            }
+        }
+    }
+}
