@@ -31,7 +31,7 @@ pub struct SurfaceInteraction {
     pub n: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// The hit's own parameters: see [`Hit::u`] and [`Hit::v`].
+    /// The hit's own parameters: see [`Hit::u`](crate::Hit::u) and [`Hit::v`](crate::Hit::v).
     pub param: Vec2,
     /// Derivative of the position by texture u.
     pub dpdu: Vec3,

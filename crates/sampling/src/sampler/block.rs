@@ -22,7 +22,7 @@ type Row = [[Cell<Vec2>; LANES]; GROUPS];
 /// Room for the numbers of the samples of one pixel that share a block, to be used again for block after block.
 ///
 /// What a sampler has to do for a number is the same for all samples of a block but for a few integer operations, so they are done
-/// for [`LANES`] samples at once when the first of them asks. The numbers are those that every sample by itself would get, to
+/// for sixteen samples at once when the first of them asks. The numbers are those that every sample by itself would get, to
 /// the bit.
 #[derive(Debug)]
 pub struct SampleRoom {
