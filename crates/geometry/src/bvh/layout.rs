@@ -2,7 +2,7 @@
 
 use super::{
     Bvh,
-    build::{Counts, Hull, Inner, Reference, Target, Tree, Word},
+    build::{Counts, Hull, Inner, Reference, Target, Tree, Word, initialised},
     node::{Child, Kind, LeafPrimitive, Node, TriangleBlock, WIDTH},
     with_capacity,
 };
@@ -144,9 +144,8 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
     }
 
     fn references(&self, first: usize, len: usize) -> &[Reference] {
-        let part = &self.references[first..first + len];
         // SAFETY: leaves name initialised references.
-        unsafe { std::slice::from_raw_parts(part.as_ptr().cast(), part.len()) }
+        unsafe { initialised(&self.references[first..first + len]) }
     }
 
     fn leaf(&self, leaf: &[Reference], room: &mut Room<'_>) -> Child {

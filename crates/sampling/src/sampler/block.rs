@@ -31,17 +31,13 @@ pub struct SampleRoom {
     /// Per dimension, of which groups of [`LANES`] samples the numbers are known, a bit for each. Four bits above tell which groups
     /// have been asked for: one sample alone may be all that ever asks.
     known: [Cell<u8>; SLOTS],
-    numbers: Box<[Row; SLOTS]>,
+    /// For every dimension; empty before the first block.
+    numbers: Vec<Row>,
 }
 
 impl Default for SampleRoom {
     fn default() -> Self {
-        let row = || std::array::from_fn(|_| std::array::from_fn(|_| Cell::new(Vec2::ZERO)));
-        Self {
-            block: None,
-            known: [const { Cell::new(0) }; SLOTS],
-            numbers: Box::new(std::array::from_fn(|_| row())),
-        }
+        Self { block: None, known: [const { Cell::new(0) }; SLOTS], numbers: Vec::new() }
     }
 }
 
@@ -51,6 +47,7 @@ impl SampleRoom {
         if sample.block_size() < 8 {
             return false;
         }
+        self.numbers.resize_with(SLOTS, Row::default);
         let block = Some(sample.at_place(0));
         if self.block != block {
             self.block = block;

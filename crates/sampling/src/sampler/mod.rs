@@ -53,6 +53,8 @@ pub struct PixelSample<'a> {
     /// Hash of the seed and the pixel.
     pixel_seed: u64,
     pattern: Pattern<'a>,
+    /// Where numbers of the block it belongs to are kept, and its place in that.
+    kept: Option<(&'a SampleRoom, u32)>,
 }
 
 #[derive(Copy, Clone, Debug)]
@@ -60,11 +62,6 @@ enum Pattern<'a> {
     Independent,
     Stratified(StratifiedSample),
     Sobol(SobolSample),
-    /// The sample at a place of a block of Sobol' points whose numbers are kept.
-    SobolBlock {
-        room: &'a SampleRoom,
-        place: u32,
-    },
     NRooks(NRooksSample),
     MultiJittered(MultiJitteredSample),
     Halton(HaltonSample),
@@ -132,21 +129,20 @@ impl Sampler {
         room: &mut SampleRoom,
         mut take: impl FnMut(&PixelSample<'_>),
     ) {
-        while indices.start < indices.end {
+        while !indices.is_empty() {
             let first = self.at(pixel, indices.start);
-            indices.start += 1;
-            if let Pattern::Sobol(sobol) = first.pattern
-                && room.begin(sobol)
-            {
-                let rest = (sobol.block_size() - sobol.place()).min(indices.end + 1 - indices.start);
-                for i in 0..rest {
-                    let pattern = Pattern::SobolBlock { room, place: sobol.place() + i };
-                    take(&PixelSample { index: first.index + i, pattern, ..first });
+            let mut taken = 1;
+            match first.pattern {
+                Pattern::Sobol(sobol) if room.begin(sobol) => {
+                    taken = (sobol.block_size() - sobol.place()).min(indices.len() as u32);
+                    for i in 0..taken {
+                        let kept = Some((&*room, sobol.place() + i));
+                        take(&PixelSample { index: first.index + i, kept, ..first });
+                    }
                 }
-                indices.start += rest - 1;
-            } else {
-                take(&first);
+                _ => take(&first),
             }
+            indices.start += taken;
         }
     }
 
@@ -186,7 +182,7 @@ impl Sampler {
                 Pattern::Halton(self.halton.at(seed, index))
             }
         };
-        PixelSample { pixel, index, pixel_seed, pattern }
+        PixelSample { pixel, index, pixel_seed, pattern, kept: None }
     }
 
     /// One variable of the sample, as the plan has it.
@@ -238,18 +234,18 @@ impl PixelSample<'_> {
     /// The number of a dimension, in `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
-        match &self.pattern {
-            Pattern::SobolBlock { room, place } => room.get(*place, dimension).x,
-            _ => self.compute_1d(dimension),
+        match self.kept {
+            Some((room, place)) => room.get(place, dimension).x,
+            None => self.compute_1d(dimension),
         }
     }
 
     /// The two numbers of a dimension, each in `[0, 1)`.
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
-        match &self.pattern {
-            Pattern::SobolBlock { room, place } => room.get(*place, dimension),
-            _ => self.compute_2d(dimension),
+        match self.kept {
+            Some((room, place)) => room.get(place, dimension),
+            None => self.compute_2d(dimension),
         }
     }
 
@@ -258,7 +254,6 @@ impl PixelSample<'_> {
             Pattern::Independent => unit_f32(self.hash(dimension) as u32),
             Pattern::Stratified(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_1d(dimension.key()),
-            Pattern::SobolBlock { room, place } => room.get(*place, dimension).x,
             Pattern::NRooks(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_1d(dimension.key()),
@@ -277,7 +272,6 @@ impl PixelSample<'_> {
             }
             Pattern::Stratified(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Sobol(s) => s.get_2d(dimension.key()),
-            Pattern::SobolBlock { room, place } => room.get(*place, dimension),
             Pattern::NRooks(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_2d(dimension.key(), self.hash(dimension)),

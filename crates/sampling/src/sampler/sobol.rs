@@ -81,8 +81,20 @@ impl SobolSample {
         self.size == 1 << self.place_bits
     }
 
-    /// The two numbers of the `LANES` samples at the places from `first` in the block, as [`Self::get_2d`] has them, by operations for the
-    /// lanes of vectors. Places beyond the block's size get those of its last.
+    #[inline]
+    pub(super) fn get_1d(&self, key: u32) -> f32 {
+        let [[x], _] = self.get_lanes(key, self.place);
+        x
+    }
+
+    #[inline]
+    pub(super) fn get_2d(&self, key: u32) -> Vec2 {
+        let [[x], [y]] = self.get_lanes(key, self.place);
+        Vec2::new(x, y)
+    }
+
+    /// The two numbers of the `LANES` samples at the places from `first` in the block, by operations for the lanes of vectors. Places beyond
+    /// the block's size get those of its last.
     #[inline(always)]
     pub(super) fn get_lanes<const LANES: usize>(&self, key: u32, first: u32) -> [[f32; LANES]; 2] {
         let h = combine(self.seed, u64::from(key));
@@ -93,20 +105,18 @@ impl SobolSample {
         for (coordinates, seed) in [(&mut x, h as u32), (&mut y, (h >> 32) as u32)] {
             coordinates.iter_mut().for_each(|x| *x = scramble(*x, seed).reverse_bits());
         }
-        [x, y].map(|coordinates| {
-            let mut numbers = [0.0; LANES];
-            for (number, bits) in numbers.iter_mut().zip(coordinates) {
-                // As `unit_f32`, by way of signed integers, for which more machines have an instruction.
-                *number = (bits >> 8) as i32 as f32 * (1.0 / (1u32 << 24) as f32);
-            }
-            numbers
-        })
+        let mut numbers = [[0.0; LANES]; 2];
+        for (numbers, coordinates) in numbers.iter_mut().zip([x, y]) {
+            numbers.iter_mut().zip(coordinates).for_each(|(number, bits)| *number = unit_f32(bits));
+        }
+        numbers
     }
 
     /// The coordinates of points before they are scrambled, their first bits the lowest, for places from `first` in a whole block.
     #[inline(always)]
     fn coordinates_in_whole<const LANES: usize>(&self, h: u64, first: u32) -> ([u32; LANES], [u32; LANES]) {
-        // Places are the lowest bits of the index, so the coordinates of the block and of the place add up (without carry).
+        // All places of a whole block are taken, so they need not be nested in anything. They are the lowest bits of the index, and the
+        // coordinates of the block and of the place add up (without carry).
         let block = (shuffle(self.mirrored, h, self.digits) << self.shift).reverse_bits();
         let (block_x, block_y) = (block as u32, second(block));
         let (mut x, mut y) = ([0; LANES], [0; LANES]);
@@ -144,46 +154,6 @@ impl SobolSample {
             *y = second(u64::from(path_bits ^ *x));
         }
         (x, y)
-    }
-
-    #[inline]
-    pub(super) fn get_1d(&self, key: u32) -> f32 {
-        let h = combine(self.seed, u64::from(key));
-        let x = scramble(((self.point(h) >> 32) as u32).reverse_bits(), h as u32);
-        unit_f32(x.reverse_bits())
-    }
-
-    #[inline]
-    pub(super) fn get_2d(&self, key: u32) -> Vec2 {
-        let h = combine(self.seed, u64::from(key));
-        let index = self.point(h).reverse_bits();
-        let x = scramble(index as u32, h as u32);
-        let y = scramble(second(index), (h >> 32) as u32);
-        let bits = (u64::from(y) << 32 | u64::from(x)).reverse_bits();
-        Vec2::new(unit_f32((bits >> 32) as u32), unit_f32(bits as u32))
-    }
-
-    /// The mirrored index, its lowest bit in bit 63, of the point that the sample takes in the dimension with the hash `h`.
-    #[inline]
-    fn point(&self, h: u64) -> u64 {
-        let key = h ^ self.block_seed;
-        let point = if self.block_is_whole() {
-            // All places of a whole block are taken, so they need not be nested in anything, nor be mirrored.
-            let place = u64::from(scatter(self.place, self.place_bits, key));
-            shuffle(self.mirrored, h, self.digits) ^ place << (64 - self.place_bits - self.shift)
-        } else {
-            shuffle(self.mirrored | self.permuted(key), h, self.digits)
-        };
-        point << self.shift
-    }
-
-    /// The place in a block that is not whole, mirrored, where it belongs in the index.
-    fn permuted(&self, key: u64) -> u64 {
-        let mut place = scatter(self.place, self.place_bits, key);
-        while place >= self.size {
-            place = scatter(place, self.place_bits, key);
-        }
-        u64::from(place.reverse_bits()) << (32 - self.shift)
     }
 }
 

@@ -10,6 +10,7 @@ mod reference;
 mod spatial;
 
 pub(super) use hull::Hull;
+pub(super) use pair::initialised;
 pub(crate) use presplit::presplit;
 pub(crate) use reference::{Reference, Target, padded};
 

@@ -38,9 +38,8 @@ impl<'a, T: Copy> Pair<'a, T> {
     }
 
     pub(super) fn items(&self) -> &[T] {
-        let items = &self.sides[0][self.start..self.start + self.len];
         // SAFETY: they are initialised.
-        unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), items.len()) }
+        unsafe { initialised(&self.sides[0][self.start..self.start + self.len]) }
     }
 
     pub(super) fn items_mut(&mut self) -> &mut [T] {
@@ -52,9 +51,8 @@ impl<'a, T: Copy> Pair<'a, T> {
     /// The items, and the other side.
     pub(super) fn sides(&mut self) -> (&[T], &mut [MaybeUninit<T>]) {
         let [items, room] = &mut self.sides;
-        let items = &items[self.start..self.start + self.len];
         // SAFETY: they are initialised.
-        (unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), items.len()) }, room)
+        (unsafe { initialised(&items[self.start..self.start + self.len]) }, room)
     }
 
     /// The other side, after items were written to it: `low` at its front and `high` at its back. `need` tells how much of the slack halves want.
@@ -70,9 +68,8 @@ impl<'a, T: Copy> Pair<'a, T> {
         if slack > 0 {
             // They overlap in nothing but slack.
             let needs = [(0, low), (items.len() - high, high)].map(|(start, len)| {
-                let part = &items[start..start + len];
                 // SAFETY: by the caller's promise.
-                need(unsafe { std::slice::from_raw_parts(part.as_ptr().cast(), len) })
+                need(unsafe { initialised(&items[start..start + len]) })
             });
             // The cast makes 0 of what is not a number.
             cut += ((slack as f32 * (needs[0] / (needs[0] + needs[1]))) as usize).min(slack);
@@ -109,4 +106,14 @@ impl<'a, T: Copy> Pair<'a, T> {
         }
         self.start
     }
+}
+
+/// Items that are all there.
+///
+/// # Safety
+/// They must be initialised.
+// `<[MaybeUninit<T>]>::assume_init_ref`, which is newer than the oldest compiler that builds this.
+pub(in crate::bvh) unsafe fn initialised<T>(items: &[MaybeUninit<T>]) -> &[T] {
+    // SAFETY: by the caller's promise; both have one layout.
+    unsafe { std::slice::from_raw_parts(items.as_ptr().cast(), items.len()) }
 }
