@@ -122,7 +122,8 @@ impl SobolSample {
         let (mut x, mut y) = ([0; LANES], [0; LANES]);
         for (place, (x, y)) in (first..).zip(x.iter_mut().zip(&mut y)) {
             let index = scatter(place, self.place_bits, h ^ self.block_seed);
-            let index = index.reverse_bits() >> (32 - self.place_bits);
+            // In two steps, as a block of one sample has no bits.
+            let index = index.reverse_bits() >> 1 >> (31 - self.place_bits);
             *x = block_x ^ index;
             *y = block_y ^ second_of_few(index);
         }
