@@ -24,7 +24,7 @@ pub use cone::NormalCone;
 pub use hit::{Candidate, Hit, InstanceId, PrimitiveId};
 pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};
 pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
-pub use sample::{ReferencePoint, ShapeSample, SurfacePoint};
+pub use sample::{ReferencePoint, ReferencePoints, ShapeSample, ShapeSamples, SurfacePoint};
 pub use shape::{
     BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape, ShapeError,
     ShapeHit, Sphere, SphereParams, Triangle,

@@ -1,5 +1,5 @@
 use crate::ray_between;
-use tenfold_math::{Ray, Vec2, Vec3, offset_ray_origin};
+use tenfold_math::{Floats, Ray, Vec2, Vec3, Vec3s, WIDTH, offset_ray_origin};
 
 /// A point from which a shape is seen: where a light is sampled.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -59,6 +59,49 @@ impl ReferencePoint {
     }
 }
 
+/// A [`ReferencePoint`] in each slot.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct ReferencePoints {
+    /// The points.
+    pub p: Vec3s,
+    /// See [`ReferencePoint::p_error`].
+    pub p_error: Vec3s,
+    /// See [`ReferencePoint::n`].
+    pub n: Vec3s,
+    /// See [`ReferencePoint::ns`].
+    pub ns: Vec3s,
+    /// See [`ReferencePoint::one_sided`].
+    pub one_sided: [bool; WIDTH],
+    /// The times of the paths.
+    pub time: Floats,
+}
+
+impl ReferencePoints {
+    /// The point in a slot.
+    #[inline(always)]
+    pub fn get(&self, slot: usize) -> ReferencePoint {
+        ReferencePoint {
+            p: self.p.get(slot),
+            p_error: self.p_error.get(slot),
+            n: self.n.get(slot),
+            ns: self.ns.get(slot),
+            one_sided: self.one_sided[slot],
+            time: self.time[slot],
+        }
+    }
+
+    /// Sets the point in a slot.
+    #[inline(always)]
+    pub fn set(&mut self, slot: usize, point: ReferencePoint) {
+        self.p.set(slot, point.p);
+        self.p_error.set(slot, point.p_error);
+        self.n.set(slot, point.n);
+        self.ns.set(slot, point.ns);
+        self.one_sided[slot] = point.one_sided;
+        self.time[slot] = point.time;
+    }
+}
+
 /// A point sampled on a shape.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ShapeSample {
@@ -92,6 +135,30 @@ impl ShapeSample {
     }
 }
 
+/// What a shadow ray needs of a [`ShapeSample`], in each slot.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct ShapeSamples {
+    /// The points.
+    pub p: Vec3s,
+    /// See [`ShapeSample::p_error`].
+    pub p_error: Vec3s,
+    /// See [`ShapeSample::n`].
+    pub n: Vec3s,
+    /// The densities: not positive where there is no sample.
+    pub pdf: Floats,
+}
+
+impl ShapeSamples {
+    /// Sets the sample in a slot.
+    #[inline]
+    pub fn set(&mut self, slot: usize, sample: &ShapeSample) {
+        self.p.set(slot, sample.p);
+        self.p_error.set(slot, sample.p_error);
+        self.n.set(slot, sample.n);
+        self.pdf[slot] = sample.pdf;
+    }
+}
+
 /// A point on a shape, as far as densities depend on it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SurfacePoint {
@@ -105,7 +172,7 @@ pub struct SurfacePoint {
 
 /// An area density turned into one of solid angle, where `to_light` leads to a surface with unit normal `n`;
 /// infinite or NaN where the surface is seen edge-on or touched.
-#[inline]
+#[inline(always)]
 pub(crate) fn area_to_solid_angle(pdf: f32, to_light: Vec3, n: Vec3) -> f32 {
     let distance_squared = to_light.length_squared();
     // |cos| = |n·d| / |d|, so distance² / |cos| = distance³ / |n·d|.
@@ -113,7 +180,7 @@ pub(crate) fn area_to_solid_angle(pdf: f32, to_light: Vec3, n: Vec3) -> f32 {
 }
 
 /// [`area_to_solid_angle`] for a known pair of points: 0 where that has no finite value.
-#[inline]
+#[inline(always)]
 pub(crate) fn pdf_by_solid_angle(pdf_area: f32, to_light: Vec3, n: Vec3) -> f32 {
     let pdf = area_to_solid_angle(pdf_area, to_light, n);
     if pdf.is_finite() { pdf } else { 0.0 }
@@ -121,7 +188,7 @@ pub(crate) fn pdf_by_solid_angle(pdf_area: f32, to_light: Vec3, n: Vec3) -> f32 
 
 /// Weights of the corners of the unit square where the directions to them have these cosines to the shading normal: never zero, so
 /// that every direction stays possible (pbrt book, 4th edition, §6.5.4).
-#[inline]
+#[inline(always)]
 pub(crate) fn corner_weights(reference: &ReferencePoint, cosines: [f32; 4]) -> [f32; 4] {
     let least = 0.01;
     // Compared so that NaN counts as little.

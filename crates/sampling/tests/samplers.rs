@@ -380,18 +380,20 @@ fn samples_taken_in_turn_have_the_numbers_of_each_alone() {
             (UVec2::new(70_000, 1), 1..n.min(20)),
         ] {
             let mut next = indices.start;
-            s.for_each(pixel, indices.clone(), &mut room, |sample| {
-                let alone = s.at(pixel, next);
-                assert_eq!((sample.pixel(), sample.index()), (pixel, next));
-                for bounce in [0, 1, 7, 8, 300] {
-                    for variable in Variable::ALL {
-                        let d = Dimension::new(variable, bounce);
-                        assert_eq!(sample.get_1d(d), alone.get_1d(d), "{s:?} {d:?}");
-                        assert_eq!(sample.get_2d(d), alone.get_2d(d), "{s:?} {d:?}");
-                        assert_eq!(sample.hash(d), alone.hash(d), "{s:?} {d:?}");
+            s.for_groups(pixel, indices.clone(), &mut room, |samples| {
+                samples.iter().for_each(|sample| {
+                    let alone = s.at(pixel, next);
+                    assert_eq!((sample.pixel(), sample.index()), (pixel, next));
+                    for bounce in [0, 1, 7, 8, 300] {
+                        for variable in Variable::ALL {
+                            let d = Dimension::new(variable, bounce);
+                            assert_eq!(sample.get_1d(d), alone.get_1d(d), "{s:?} {d:?}");
+                            assert_eq!(sample.get_2d(d), alone.get_2d(d), "{s:?} {d:?}");
+                            assert_eq!(sample.hash(d), alone.hash(d), "{s:?} {d:?}");
+                        }
                     }
-                }
-                next += 1;
+                    next += 1;
+                })
             });
             assert_eq!(next, indices.end.max(indices.start));
         }

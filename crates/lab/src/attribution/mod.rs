@@ -112,8 +112,8 @@ fn samples(settings: &RenderSettings) -> u32 {
 ///
 /// # Errors
 /// [`Interrupted`] where the observer of the work did not want to go on.
-pub fn attribute(
-    scene: &Scene,
+pub fn attribute<'s>(
+    scene: &'s Scene,
     settings: &RenderSettings,
     work: &mut Work<'_>,
 ) -> Result<Attribution, Interrupted> {
@@ -132,11 +132,12 @@ pub fn attribute(
 
     let plans = |groups: &[Group]| Plans::new(&settings.sampling, groups, samples, seed);
     let everything = plans(&Group::ALL);
-    let evaluate = |plans: &Plans, pixel: UVec2, index: u32, workspace: &mut Workspace, row: &mut [f64]| {
-        for (value, sampler) in row.iter_mut().zip(&plans.samplers) {
-            *value = luminance(estimator.sample(&sampler.at(pixel, index), workspace));
-        }
-    };
+    let evaluate =
+        |plans: &Plans, pixel: UVec2, index: u32, workspace: &mut Workspace<'s>, row: &mut [f64]| {
+            for (value, sampler) in row.iter_mut().zip(&plans.samplers) {
+                *value = luminance(estimator.sample(&sampler.at(pixel, index), workspace));
+            }
+        };
 
     // Which groups make any difference?
     let tiles = bounds.tiles(TILE);

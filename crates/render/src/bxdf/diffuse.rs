@@ -26,6 +26,18 @@ impl Diffuse {
         self.reflectance
     }
 
+    /// The BSDF of an albedo.
+    #[inline]
+    pub(crate) fn value(reflectance: SampledSpectrum) -> SampledSpectrum {
+        reflectance * FRAC_1_PI
+    }
+
+    /// Density in solid angle of a direction on the side of incidence with this cosine to the normal.
+    #[inline]
+    pub(crate) fn density(cos: f32) -> f32 {
+        FRAC_1_PI * cos.abs()
+    }
+
     #[inline]
     pub(crate) fn lobes(&self) -> Lobe {
         if self.reflectance.is_black() { Lobe::NONE } else { Lobe::REFLECTION | Lobe::DIFFUSE }
@@ -36,7 +48,7 @@ impl Diffuse {
         if !same_hemisphere(wo, wi) {
             return Scattering::ZERO;
         }
-        Scattering { f: self.reflectance * FRAC_1_PI, pdf: SampledSpectrum::splat(FRAC_1_PI * wi.z.abs()) }
+        Scattering { f: Self::value(self.reflectance), pdf: SampledSpectrum::splat(Self::density(wi.z)) }
     }
 
     #[inline]

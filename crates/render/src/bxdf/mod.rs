@@ -48,7 +48,7 @@ use record::Scattering;
 use strategy::Hemispheres;
 
 /// Directions with a cosine below this lie in the surface: values over the cosine stay finite.
-const HORIZON: f32 = 1e-30;
+pub(crate) const HORIZON: f32 = 1e-30;
 
 /// A scattering function in the local frame of shading.
 #[derive(Copy, Clone, Debug)]

@@ -5,12 +5,14 @@
 //! (Veach 1997, §9.2; other [`Strategies`] are there for comparison), for four wavelengths at once.
 
 mod combine;
+mod even;
 mod path;
 mod spectral;
 mod strategies;
 mod tracer;
+mod wave;
 
 pub use combine::CombineStrategy;
 pub use spectral::DispersionRule;
 pub use strategies::Strategies;
-pub use tracer::{PathTracer, RayCounts, Workspace};
+pub use tracer::{PathTracer, RayCounts, Sample, Workspace};

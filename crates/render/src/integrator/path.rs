@@ -1,10 +1,9 @@
 use super::{CombineStrategy, spectral::Lanes};
-use crate::light::LightSample;
 use tenfold_geometry::ReferencePoint;
 use tenfold_math::Ray;
 use tenfold_spectrum::SampledSpectrum;
 
-/// A path under way: where it goes next and what it has gathered on its way.
+/// A path under way: what it carries.
 ///
 /// The path so far has been drawn with the density of its hero. By spectral multiple importance sampling (Wilkie et al.
 /// 2014) it stands for all its lanes: `ratio` holds, per lane, the density with which that lane as hero
@@ -12,7 +11,8 @@ use tenfold_spectrum::SampledSpectrum;
 /// `beta` by the mean of `ratio`.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Path {
-    pub(super) ray: Ray,
+    /// Which of the samples that are traced together it belongs to.
+    pub(super) sample: usize,
     pub(super) lanes: Lanes,
     /// Product of f·|cos| over the hero's densities.
     pub(super) beta: SampledSpectrum,
@@ -32,17 +32,27 @@ pub(super) struct Path {
 pub(super) enum Arrival {
     /// From the camera or a specular bounce: no light sample could have done it.
     Specular,
-    /// From a bounce at `from`, where a light has been sampled too. `light_ratio` is, per lane, `ratio` with the
+    /// From a bounce where a light has been sampled too. `light_ratio` is, per lane, `ratio` with the
     /// last direction's density left out: times the light's density it is that of the other strategy.
-    Scattered { from: ReferencePoint, light_ratio: SampledSpectrum },
+    Scattered { light_ratio: SampledSpectrum },
+}
+
+/// A path that waits for its turn.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Waiting {
+    pub(super) path: Path,
+    /// Where it goes next.
+    pub(super) ray: Ray,
+    /// The vertex that it leaves.
+    pub(super) from: ReferencePoint,
 }
 
 impl Path {
-    /// A path that starts at the camera.
+    /// The path of a sample that starts at the camera.
     #[inline]
-    pub(super) fn from_camera(ray: Ray) -> Self {
+    pub(super) fn from_camera(sample: usize) -> Self {
         Self {
-            ray,
+            sample,
             lanes: Lanes::ALL,
             beta: SampledSpectrum::ONE,
             ratio: SampledSpectrum::ONE,
@@ -53,19 +63,19 @@ impl Path {
     }
 
     /// What the path carries back of the light `emitted` where it now is, weighed against a light sampled at its last vertex;
-    /// `light_pdf` is the density with which that vertex samples this light in this direction.
+    /// `light_pdf` is the density with which it samples this light in this direction.
     #[inline]
     pub(super) fn carried(
         &self,
         combine: CombineStrategy,
         emitted: SampledSpectrum,
-        light_pdf: impl FnOnce(&ReferencePoint) -> f32,
+        light_pdf: impl FnOnce() -> f32,
     ) -> SampledSpectrum {
         let density = self.lanes.mean(self.ratio);
         let density = match &self.arrival {
             Arrival::Specular => density,
-            Arrival::Scattered { from, light_ratio } => {
-                let light_pdf = light_pdf(from);
+            Arrival::Scattered { light_ratio } => {
+                let light_pdf = light_pdf();
                 match combine {
                     CombineStrategy::Mis => {
                         let light_density = self.lanes.mean(*light_ratio) * light_pdf;
@@ -79,27 +89,55 @@ impl Path {
         self.beta * emitted / density
     }
 
-    /// Per lane, the density by which to divide light that was sampled at the vertex where the path is, weighed against a
-    /// scattered direction that meets it by itself with density `scatter_pdf`; `None` where the latter alone counts. Where lanes part
+    /// Per lane, the density by which to divide light that was sampled with the density `light_pdf` at the vertex where the path is, weighed
+    /// against a scattered direction that meets it by itself with density `scatter_pdf`, which it does not where it is a `delta`; `None` where the latter alone counts. Where lanes part
     /// (`parts`) each weighs its own densities, otherwise all weigh those of all.
     #[inline]
     pub(super) fn density_of_sampled(
         &self,
         combine: CombineStrategy,
-        light: &LightSample,
+        light_pdf: f32,
+        delta: bool,
         scatter_pdf: SampledSpectrum,
         parts: bool,
     ) -> Option<SampledSpectrum> {
         let all = |x: SampledSpectrum| if parts { x } else { SampledSpectrum::splat(self.lanes.mean(x)) };
-        let density = all(self.ratio * light.pdf);
+        let density = all(self.ratio * light_pdf);
         match combine {
-            CombineStrategy::Mis if !light.delta => {
+            CombineStrategy::Mis if !delta => {
                 let scattered = all(self.ratio * scatter_pdf);
                 Some(density + scattered * scattered.safe_div(density))
             }
-            CombineStrategy::BsdfOnly if !light.delta => None,
+            CombineStrategy::BsdfOnly if !delta => None,
             _ => Some(density),
         }
+    }
+
+    /// Weighs in a scattered direction with the value `f`, the absolute cosine `cos` and the densities `pdf` per lane; false where nothing is left
+    /// to carry.
+    #[inline]
+    pub(super) fn advance(
+        &mut self,
+        f: SampledSpectrum,
+        cos: f32,
+        pdf: SampledSpectrum,
+        specular: bool,
+    ) -> bool {
+        let hero_pdf = pdf.lane(self.lanes.hero());
+        self.beta = self.beta * f * (cos / hero_pdf);
+        self.arrival = match specular {
+            true => Arrival::Specular,
+            false => Arrival::Scattered { light_ratio: self.ratio / hero_pdf },
+        };
+        self.ratio = self.ratio * pdf / hero_pdf;
+        !self.beta.is_black()
+    }
+
+    /// Leaves a vertex for a medium with the relative index of refraction `eta`.
+    #[inline]
+    pub(super) fn leave(&mut self, eta: f32) {
+        self.eta_scale *= eta * eta;
+        self.bounce += 1;
     }
 
     /// Settles the spectral weights of the path so far, so that from here lanes may part.

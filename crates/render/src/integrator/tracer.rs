@@ -1,17 +1,19 @@
 use super::{
     Strategies,
-    path::{Arrival, Path},
+    even::{self, EvenScattering},
+    path::{Arrival, Path, Waiting},
     spectral::{DispersionRule, Lanes},
+    wave::{Vertices, Wave},
 };
 use crate::{
-    bxdf::{Bsdf, BsdfSample, Lobe},
-    light::{LightSample, ShadowRay},
+    bxdf::{Bsdf, BsdfSample, BsdfValue, Diffuse, Lobe, ScatterStrategy},
+    light::{LightSamples, ShadowRay},
     material::Waves,
     scene::{Scene, Surface},
     texture::TextureContext,
 };
 use tenfold_geometry::{Candidate, Hit, ReferencePoint, SurfaceInteraction};
-use tenfold_math::Ray;
+use tenfold_math::{Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
 
@@ -51,21 +53,38 @@ pub struct PathTracer<'a> {
     indices: Option<SampledWavelengths>,
 }
 
-/// What tracing needs room for, to be used again for sample after sample.
-#[derive(Debug, Default)]
-pub struct Workspace {
-    /// Paths that wait for their turn. Every split leaves each lane on one path only: there are never more than lanes.
-    pending: Vec<Path>,
-    /// Rays traced so far.
-    pub rays: RayCounts,
+/// A sample of a pixel whose path is traced.
+#[derive(Copy, Clone, Debug)]
+pub struct Sample<'s> {
+    /// Whom it asks for numbers.
+    pub sampler: &'s PixelSample<'s>,
+    /// The ray from the camera.
+    pub ray: Ray,
+    /// The wavelengths of the path.
+    pub wavelengths: SampledWavelengths,
+    /// The estimate of the spectral radiance that arrives along the ray, against its direction, in the lanes of `wavelengths`, not
+    /// yet divided by their densities.
+    pub radiance: SampledSpectrum,
 }
 
-/// One sample being traced.
-struct Sample<'a> {
-    wavelengths: &'a SampledWavelengths,
-    sampler: &'a PixelSample<'a>,
-    radiance: SampledSpectrum,
-    workspace: &'a mut Workspace,
+impl<'s> Sample<'s> {
+    /// A sample that has found no light yet.
+    #[inline]
+    pub fn new(sampler: &'s PixelSample<'s>, ray: Ray, wavelengths: SampledWavelengths) -> Self {
+        Self { sampler, ray, wavelengths, radiance: SampledSpectrum::ZERO }
+    }
+}
+
+/// What tracing needs room for, to be used again for sample after sample.
+#[derive(Debug, Default)]
+pub struct Workspace<'a> {
+    wave: Wave<'a>,
+    lights: LightSamples,
+    scattering: EvenScattering,
+    /// Paths that wait for their turn. Every split leaves each lane on one path only: a sample has never more than lanes.
+    pending: Vec<Waiting>,
+    /// Rays traced so far.
+    pub rays: RayCounts,
 }
 
 impl<'a> PathTracer<'a> {
@@ -82,47 +101,94 @@ impl<'a> PathTracer<'a> {
         Self { indices: wavelength.map(SampledWavelengths::fixed), ..self }
     }
 
-    /// An estimate of the spectral radiance that arrives along `ray`, against its direction, in the lanes of
-    /// `wavelengths`, not yet divided by their densities.
-    #[inline]
-    pub fn radiance(
-        &self,
-        ray: Ray,
-        wavelengths: &SampledWavelengths,
-        sampler: &PixelSample<'_>,
-        workspace: &mut Workspace,
-    ) -> SampledSpectrum {
-        let mut sample = Sample { wavelengths, sampler, radiance: SampledSpectrum::ZERO, workspace };
-        self.follow(Path::from_camera(ray), &mut sample);
-        while let Some(path) = sample.workspace.pending.pop() {
-            self.follow(path, &mut sample);
+    /// Estimates the radiance of `samples`, at most [`WIDTH`], by paths that take each step together. The estimate of each is the same, whichever others
+    /// are with it.
+    pub fn trace(&self, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
+        for (slot, sample) in samples.iter().enumerate() {
+            workspace.wave.paths[slot] = Path::from_camera(slot);
+            workspace.wave.rays.set(slot, sample.ray);
         }
-        sample.radiance
+        let mut live = Slots::first(samples.len());
+        loop {
+            while !live.is_empty() {
+                let vertices = self.go_on(live, samples, workspace);
+                self.add_direct(&vertices, samples, workspace);
+                live = self.scatter(&vertices, samples, workspace);
+            }
+            let Some(waiting) = workspace.pending.pop() else { return };
+            live = workspace.wave.resume(waiting);
+        }
     }
 
-    /// Follows a path to its end, leaving paths that split off pending.
-    fn follow(&self, mut path: Path, sample: &mut Sample<'_>) {
+    /// Takes the paths in the slots `live` to their next vertices, or to their ends.
+    fn go_on(&self, live: Slots, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) -> Vertices {
+        let Workspace { wave, rays, .. } = workspace;
+        let mut hits = [None; WIDTH];
+        for slot in live {
+            let path = &wave.paths[slot];
+            hits[slot] = self.intersect(&wave.rays.get(slot), path, &samples[path.sample], rays);
+        }
+        let mut vertices = Vertices::default();
+        for slot in live {
+            let sample = &mut samples[wave.paths[slot].sample];
+            self.meet(slot, hits[slot], sample, wave, rays, &mut vertices);
+        }
+        vertices
+    }
+
+    /// What a path next meets.
+    #[inline]
+    fn intersect(&self, ray: &Ray, path: &Path, sample: &Sample<'_>, rays: &mut RayCounts) -> Option<Hit> {
+        rays.path += 1;
+        let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
+        self.scene.world.intersect(ray, f32::INFINITY, |c| self.stops(ray, c, chance))
+    }
+
+    /// Takes the path in `slot`, which has met `hit`, to its next vertex, through interfaces, or to its end.
+    #[inline]
+    fn meet(
+        &self,
+        slot: usize,
+        mut hit: Option<Hit>,
+        sample: &mut Sample<'_>,
+        wave: &mut Wave<'a>,
+        rays: &mut RayCounts,
+        vertices: &mut Vertices,
+    ) {
         let scene = self.scene;
         let mut passes = 0;
+        let path = &mut wave.paths[slot];
+        let mut ray = wave.rays.get(slot);
+        let last = &wave.from;
         loop {
-            sample.workspace.rays.path += 1;
-            let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
-            let stops = |c: &Candidate<'_>| self.stops(&path.ray, c, chance);
-            let Some(hit) = scene.world.intersect(&path.ray, f32::INFINITY, stops) else {
-                self.add_escaped(&path, sample);
+            let Some(found) = &hit else {
+                self.add_escaped(path, &ray, || last.get(slot), sample);
                 return;
             };
-            let surface = scene.world.interaction(&path.ray, &hit);
-            self.add_emitted(&path, &surface, sample);
+            let surface = scene.world.interaction(&ray, found);
+            self.add_emitted(path, &ray, || last.get(slot), &surface, sample);
             let at_end = path.bounce >= scene.max_depth;
             let material = self.look(&surface).material;
             // A path that has met all the surfaces it may still passes those that are none.
             if at_end && !scene.materials.may_be_interface(material) {
                 return;
             }
-            // By reference, here and below: these records are large to move.
-            let bsdf = self.bsdf(&path, &surface, passes, sample);
-            let Some(bsdf) = &bsdf else {
+            let at = self.context(&surface);
+            if !at_end && self.strategies.scatter == ScatterStrategy::Bsdf {
+                let waves = self.waves(sample);
+                if let Some(reflectance) =
+                    scene.materials.even_reflectance(material, &scene.textures, &at, waves)
+                {
+                    if !reflectance.is_black() {
+                        wave.even.set(slot, &surface.shading, reflectance);
+                        wave.arrive(slot, surface.reference().seen_from(surface.wo), &surface);
+                        vertices.even.insert(slot);
+                    }
+                    return;
+                }
+            }
+            wave.bsdfs[slot] = self.bsdf(path, &surface, &at, passes, sample);
+            let Some(bsdf) = &wave.bsdfs[slot] else {
                 passes += 1;
                 if passes > MOST_PASSES {
                     return;
@@ -131,42 +197,48 @@ impl<'a> PathTracer<'a> {
                     // Shadow rays stop at what is an interface by chance alone: no light sample could have come this way.
                     path.arrival = Arrival::Specular;
                 }
-                path.ray = surface.spawn_ray(path.ray.direction);
+                ray = surface.spawn_ray(ray.direction);
+                hit = self.intersect(&ray, path, sample, rays);
                 continue;
             };
             if at_end {
                 return;
             }
             if self.rule == DispersionRule::Terminate && path.lanes.count() > 1 && bsdf.is_dispersive() {
-                terminate_secondary(&mut path);
+                terminate_secondary(path);
             }
-            let parts = path.lanes.count() > 1 && bsdf.parts_wavelengths();
-            if parts {
+            if path.lanes.count() > 1 && bsdf.parts_wavelengths() {
                 path.settle();
+                vertices.parting.insert(slot);
+            }
+            if bsdf.lobes().has_density() {
+                vertices.glossy.insert(slot);
             }
             let mut from = surface.reference();
             if !bsdf.lobes().is_transmissive() {
                 from = from.seen_from(surface.wo);
             }
-            if bsdf.lobes().has_density() {
-                self.add_direct(&path, &surface, &from, bsdf, parts, sample);
-            }
-            if parts {
-                self.part(&path, &surface, &from, bsdf, sample);
-                return;
-            }
-            let u_lobe = if bsdf.chooses_lobe() {
-                sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce))
-            } else {
-                0.0
-            };
-            let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
-            let scattered = bsdf.sample(surface.wo, u_lobe, u, path.lanes.hero());
-            let Some(scattered) = &scattered else { return };
-            if !advance(&mut path, &surface, &from, bsdf, scattered) || !survives(&mut path, sample) {
-                return;
-            }
+            wave.arrive(slot, from, &surface);
+            vertices.other.insert(slot);
+            return;
         }
+    }
+
+    /// A point of a surface as textures see it.
+    #[inline]
+    fn context(&self, surface: &SurfaceInteraction) -> TextureContext {
+        let scene = self.scene;
+        if !scene.needs_footprint {
+            return TextureContext::at(surface);
+        }
+        let seen = scene.camera.pixel_differentials(surface.p, surface.n, surface.time, self.footprint_scale);
+        TextureContext::with_differentials(surface, seen.dpdx, seen.dpdy)
+    }
+
+    /// The wavelengths at which the materials that a path meets are evaluated.
+    #[inline]
+    fn waves<'w>(&'w self, sample: &'w Sample<'_>) -> Waves<'w> {
+        Waves { light: &sample.wavelengths, indices: self.indices.as_ref().unwrap_or(&sample.wavelengths) }
     }
 
     /// The scattering function where `path` has met `surface`, after passing `passes` interfaces; `None` for a further one.
@@ -175,17 +247,11 @@ impl<'a> PathTracer<'a> {
         &self,
         path: &Path,
         surface: &SurfaceInteraction,
+        at: &TextureContext,
         passes: u32,
         sample: &Sample<'_>,
     ) -> Option<Bsdf<'a>> {
         let scene = self.scene;
-        let at = if scene.needs_footprint {
-            let seen =
-                scene.camera.pixel_differentials(surface.p, surface.n, surface.time, self.footprint_scale);
-            TextureContext::with_differentials(surface, seen.dpdx, seen.dpdy)
-        } else {
-            TextureContext::at(surface)
-        };
         let u_mix = || {
             let dimension = Dimension::material_mix(path.bounce);
             if passes == 0 || sample.sampler.held(dimension.variable).is_some() {
@@ -195,9 +261,8 @@ impl<'a> PathTracer<'a> {
             hash::unit_f32(hash::combine(sample.sampler.hash(dimension), passes.into()) as u32)
         };
         let material = self.look(surface).material;
-        let indices = self.indices.as_ref().unwrap_or(sample.wavelengths);
-        let waves = Waves { light: sample.wavelengths, indices };
-        let mut bsdf = scene.materials.bsdf(material, &scene.textures, surface, &at, waves, u_mix);
+        let mut bsdf =
+            scene.materials.bsdf(material, &scene.textures, surface, at, self.waves(sample), u_mix);
         if let Some(bsdf) = &mut bsdf {
             bsdf.set_strategy(self.strategies.scatter);
             if sample.sampler.held(Variable::ScatterDirection).is_some() {
@@ -216,66 +281,149 @@ impl<'a> PathTracer<'a> {
 
     /// Light that arrives from beyond the scene.
     #[inline]
-    fn add_escaped(&self, path: &Path, sample: &mut Sample<'_>) {
+    fn add_escaped(
+        &self,
+        path: &Path,
+        ray: &Ray,
+        last: impl Fn() -> ReferencePoint,
+        sample: &mut Sample<'_>,
+    ) {
         let lights = &self.scene.lights;
         for &id in lights.infinite() {
-            let emitted = lights.escaped(id, path.ray.direction, sample.wavelengths);
+            let emitted = lights.escaped(id, ray.direction, &sample.wavelengths);
             if emitted.is_black() {
                 continue;
             }
-            let direction = path.ray.direction;
-            let pdf = |from: &ReferencePoint| lights.pdf_escaped(self.strategies.light, from, id, direction);
+            let pdf = || lights.pdf_escaped(self.strategies.light, &last(), id, ray.direction);
             sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
         }
     }
 
     /// Light that the surface itself emits toward the path.
     #[inline]
-    fn add_emitted(&self, path: &Path, surface: &SurfaceInteraction, sample: &mut Sample<'_>) {
+    fn add_emitted(
+        &self,
+        path: &Path,
+        ray: &Ray,
+        last: impl Fn() -> ReferencePoint,
+        surface: &SurfaceInteraction,
+        sample: &mut Sample<'_>,
+    ) {
         let lights = &self.scene.lights;
         let Some(id) = self.look(surface).light(surface.primitive) else { return };
-        let emitted = lights.emitted(id, surface, surface.wo, sample.wavelengths);
+        let emitted = lights.emitted(id, surface, surface.wo, &sample.wavelengths);
         if emitted.is_black() {
             return;
         }
-        let direction = path.ray.direction;
-        let pdf = |from: &ReferencePoint| lights.pdf_hit(self.strategies.light, from, id, surface, direction);
+        let pdf = || lights.pdf_hit(self.strategies.light, &last(), id, surface, ray.direction);
         sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
     }
 
-    /// Light from a point sampled on a light.
-    #[inline]
-    fn add_direct(
-        &self,
-        path: &Path,
-        surface: &SurfaceInteraction,
-        from: &ReferencePoint,
-        bsdf: &Bsdf<'_>,
-        parts: bool,
-        sample: &mut Sample<'_>,
-    ) {
+    /// Light from points sampled on lights.
+    fn add_direct(&self, vertices: &Vertices, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
         let Strategies { light: strategy, combine, .. } = self.strategies;
-        let lights = &self.scene.lights;
-        let u_choice = match lights.sampled(strategy) {
-            0 => return,
-            1 => 0.0,
-            _ => sample.sampler.get_1d(Dimension::light_choice(path.bounce)),
-        };
-        let u = sample.sampler.get_2d(Dimension::light_point(path.bounce));
-        let light = lights.sample(strategy, from, u_choice, u, sample.wavelengths);
-        let Some(light) = &light else { return };
-        let scattering = bsdf.eval_and_pdf(surface.wo, light.wi);
-        let cos = light.wi.dot(bsdf.frame().z).abs();
-        let contribution = path.beta * scattering.f * light.radiance * cos;
-        if contribution.is_black() {
+        let Workspace { wave, lights: light, scattering, rays, .. } = workspace;
+        let scene_lights = &self.scene.lights;
+        let count = scene_lights.sampled(strategy);
+        let seeing = vertices.even.or(vertices.glossy);
+        if count == 0 || seeing.is_empty() {
             return;
         }
-        let Some(density) = path.density_of_sampled(combine, light, scattering.pdf, parts) else { return };
-        sample.workspace.rays.shadow += 1;
-        if self.is_shadowed(from, light, Chance { sampler: sample.sampler, bounce: path.bounce }) {
+        let (mut u_choice, mut u) = ([0.0; WIDTH], Vec2s::ZERO);
+        for slot in seeing {
+            let path = &wave.paths[slot];
+            let sampler = samples[path.sample].sampler;
+            if count > 1 {
+                u_choice[slot] = sampler.get_1d(Dimension::light_choice(path.bounce));
+            }
+            u.set(slot, sampler.get_2d(Dimension::light_point(path.bounce)));
+        }
+        let wavelengths = |slot: usize| &samples[wave.paths[slot].sample].wavelengths;
+        let lit = scene_lights.samples(strategy, seeing, &wave.from, &u_choice, &u, wavelengths, light);
+        if lit.is_empty() {
             return;
         }
-        sample.radiance += contribution.safe_div(density);
+        even::evaluate(&wave.even, &wave.wo, &light.wi, scattering);
+        for slot in lit {
+            let path = &wave.paths[slot];
+            let (f, scatter_pdf, cos) = if vertices.even.contains(slot) {
+                let pdf = scattering.pdf[slot];
+                if pdf == 0.0 {
+                    continue;
+                }
+                let f = Diffuse::value(wave.even.reflectance[slot]);
+                (f, SampledSpectrum::splat(pdf), scattering.cos[slot])
+            } else {
+                let Some(bsdf) = &wave.bsdfs[slot] else { continue };
+                let wi = light.wi.get(slot);
+                let BsdfValue { f, pdf } = bsdf.eval_and_pdf(wave.wo.get(slot), wi);
+                (f, pdf, wi.dot(bsdf.frame().z).abs())
+            };
+            let contribution = path.beta * f * light.radiance[slot] * cos;
+            if contribution.is_black() {
+                continue;
+            }
+            let (delta, parts) = (light.delta.contains(slot), vertices.parting.contains(slot));
+            let density = path.density_of_sampled(combine, light.pdf[slot], delta, scatter_pdf, parts);
+            let Some(density) = density else { continue };
+            rays.shadow += 1;
+            let sample = &mut samples[path.sample];
+            let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
+            if !self.is_shadowed(&light.shadow_ray(slot), chance) {
+                sample.radiance += contribution.safe_div(density);
+            }
+        }
+    }
+
+    /// Sends the paths on; the slots of those that go on.
+    fn scatter(&self, vertices: &Vertices, samples: &[Sample<'_>], workspace: &mut Workspace<'a>) -> Slots {
+        let Workspace { wave, scattering, pending, .. } = workspace;
+        let mut live = Slots::NONE;
+        if !vertices.even.is_empty() {
+            let mut u = Vec2s::ZERO;
+            for slot in vertices.even {
+                let path = &wave.paths[slot];
+                u.set(slot, samples[path.sample].sampler.get_2d(Dimension::scatter_direction(path.bounce)));
+            }
+            let mut rays = Rays::default();
+            even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut rays, scattering);
+            for slot in vertices.even {
+                let (pdf, cos) = (scattering.pdf[slot], scattering.cos[slot]);
+                if pdf == 0.0 {
+                    continue;
+                }
+                let path = &mut wave.paths[slot];
+                let f = Diffuse::value(wave.even.reflectance[slot]);
+                let is_carried = path.advance(f, cos, SampledSpectrum::splat(pdf), false);
+                path.bounce += 1;
+                if is_carried && survives(path, &samples[path.sample]) {
+                    wave.rays.set(slot, rays.get(slot));
+                    live.insert(slot);
+                }
+            }
+        }
+        for slot in vertices.other {
+            let Some(bsdf) = &wave.bsdfs[slot] else { continue };
+            let path = &mut wave.paths[slot];
+            let (wo, from, sample) = (wave.wo.get(slot), wave.from.get(slot), &samples[path.sample]);
+            if vertices.parting.contains(slot) {
+                self.part(path, wo, &from, bsdf, sample, pending);
+                continue;
+            }
+            let u_lobe = if bsdf.chooses_lobe() {
+                sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce))
+            } else {
+                0.0
+            };
+            let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
+            let scattered = bsdf.sample(wo, u_lobe, u, path.lanes.hero());
+            let Some(scattered) = &scattered else { continue };
+            if advance(path, bsdf, scattered) && survives(path, sample) {
+                wave.rays.set(slot, from.spawn_ray(scattered.wi));
+                live.insert(slot);
+            }
+        }
+        live
     }
 
     /// Sends every lane of a settled path its own way. Lanes that are reflected stay together: reflection does not
@@ -283,18 +431,21 @@ impl<'a> PathTracer<'a> {
     fn part(
         &self,
         path: &Path,
-        surface: &SurfaceInteraction,
+        wo: Vec3,
         from: &ReferencePoint,
         bsdf: &Bsdf<'_>,
-        sample: &mut Sample<'_>,
+        sample: &Sample<'_>,
+        pending: &mut Vec<Waiting>,
     ) {
+        let mut push =
+            |path: Path, wi: Vec3| pending.push(Waiting { path, ray: from.spawn_ray(wi), from: *from });
         // All lanes use the same random numbers: as dispersion tends to zero, so do their differences.
         let u_lobe = sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce));
         let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
         let mut reflected = 0u8;
         let mut reflection: Option<BsdfSample> = None;
         for lane in (0..N).filter(|&lane| path.lanes.carries(lane)) {
-            let Some(s) = bsdf.sample(surface.wo, u_lobe, u, lane) else { continue };
+            let Some(s) = bsdf.sample(wo, u_lobe, u, lane) else { continue };
             if s.lobe.contains(Lobe::REFLECTION) && s.lobe.is_specular() {
                 reflected |= 1 << lane;
                 // Per lane its own weight and probability, whichever lanes were reflected.
@@ -304,8 +455,8 @@ impl<'a> PathTracer<'a> {
                 continue;
             }
             let mut child = path.with_lanes(Lanes::one(lane));
-            if advance(&mut child, surface, from, bsdf, &s) && survives(&mut child, sample) {
-                sample.workspace.pending.push(child);
+            if advance(&mut child, bsdf, &s) && survives(&mut child, sample) {
+                push(child, s.wi);
             }
         }
         if let Some(s) = reflection {
@@ -314,16 +465,17 @@ impl<'a> PathTracer<'a> {
             // Each lane was reflected by its own choice: its own probability divides it, and nothing is left to weigh.
             let probability = s.pdf;
             child.beta = (child.beta * s.f * s.wi.dot(bsdf.frame().z).abs()).safe_div(probability);
-            leave(&mut child, surface, &s, Arrival::Specular);
+            child.arrival = Arrival::Specular;
+            child.leave(s.eta);
             if survives(&mut child, sample) {
-                sample.workspace.pending.push(child);
+                push(child, s.wi);
             }
         }
     }
 
     #[inline]
-    fn is_shadowed(&self, from: &ReferencePoint, light: &LightSample, chance: Chance<'_>) -> bool {
-        let ShadowRay { ray, t_max } = light.shadow_ray(from);
+    fn is_shadowed(&self, shadow: &ShadowRay, chance: Chance<'_>) -> bool {
+        let ShadowRay { ray, t_max } = *shadow;
         self.scene.world.occluded(&ray, t_max, |c| {
             // Light passes from one medium into the next.
             let material = self.scene.surfaces[c.user as usize].material;
@@ -380,35 +532,10 @@ fn terminate_secondary(path: &mut Path) {
 
 /// Weighs a scattered direction in and moves on; false where nothing is left to carry.
 #[inline]
-fn advance(
-    path: &mut Path,
-    surface: &SurfaceInteraction,
-    from: &ReferencePoint,
-    bsdf: &Bsdf<'_>,
-    s: &BsdfSample,
-) -> bool {
-    let hero_pdf = s.pdf.lane(path.lanes.hero());
-    path.beta = path.beta * s.f * (s.wi.dot(bsdf.frame().z).abs() / hero_pdf);
-    if path.beta.is_black() {
-        return false;
-    }
-    let arrival = if s.lobe.is_specular() {
-        Arrival::Specular
-    } else {
-        Arrival::Scattered { from: *from, light_ratio: path.ratio / hero_pdf }
-    };
-    path.ratio = path.ratio * s.pdf / hero_pdf;
-    leave(path, surface, s, arrival);
-    true
-}
-
-/// Leaves `surface` in the direction of `s`.
-#[inline]
-fn leave(path: &mut Path, surface: &SurfaceInteraction, s: &BsdfSample, arrival: Arrival) {
-    path.arrival = arrival;
-    path.eta_scale *= s.eta * s.eta;
-    path.ray = surface.spawn_ray(s.wi);
-    path.bounce += 1;
+fn advance(path: &mut Path, bsdf: &Bsdf<'_>, s: &BsdfSample) -> bool {
+    let is_carried = path.advance(s.f, s.wi.dot(bsdf.frame().z).abs(), s.pdf, s.lobe.is_specular());
+    path.leave(s.eta);
+    is_carried
 }
 
 /// What paths must carry to go on in any case.

@@ -6,8 +6,10 @@ use super::emitter::{Emitter, EmittingSurface};
 use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
-use tenfold_geometry::{NormalCone, Primitive, ReferencePoint, Shape, SurfacePoint};
-use tenfold_math::{Vec2, Vec3};
+use tenfold_geometry::{
+    NormalCone, Primitive, ReferencePoint, ReferencePoints, Shape, ShapeSamples, SurfacePoint,
+};
+use tenfold_math::{Slots, Vec2, Vec2s, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// The radiance that leaves a surface, the same in all directions of the side that emits.
@@ -179,6 +181,44 @@ impl DiffuseAreaLight {
             pdf: s.pdf,
             delta: self.emitting.invisible,
         })
+    }
+
+    /// Points that [`DiffuseAreaLight::sample`] chooses for the points `from` in `slots`; false where this kind of surface, emission or strategy has
+    /// to be asked for each by itself.
+    #[inline]
+    pub(super) fn points_from(
+        &self,
+        strategy: LightStrategy,
+        slots: Slots,
+        from: &ReferencePoints,
+        u: &Vec2s,
+        out: &mut ShapeSamples,
+    ) -> bool {
+        let is_even = matches!(self.emission().radiance, AreaRadiance::Uniform(_));
+        let by_solid_angle = matches!(strategy, ByTexture | Complementary | SolidAngle);
+        is_even && by_solid_angle && self.emitter().samples_from(slots, from, u, out)
+    }
+
+    /// The radiance of a surface that emits the same everywhere, on the side that emits.
+    #[inline]
+    pub(super) fn even_radiance(&self, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        let AreaEmission { radiance, scale } = self.emission();
+        match radiance {
+            AreaRadiance::Uniform(emission) => *scale * emission.sample(wavelengths),
+            AreaRadiance::Image(_) => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// Whether both sides emit.
+    #[inline]
+    pub(super) fn is_two_sided(&self) -> bool {
+        self.two_sided
+    }
+
+    /// Whether rays pass through it.
+    #[inline]
+    pub(super) fn is_invisible(&self) -> bool {
+        self.emitting.invisible
     }
 
     /// Density per steradian with which [`DiffuseAreaLight::sample`] finds `point`; where it finds but one, any positive number.

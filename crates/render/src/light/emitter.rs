@@ -1,7 +1,9 @@
 //! The surfaces of area lights.
 
-use tenfold_geometry::{Primitive, Rectangle, ReferencePoint, Shape, ShapeSample, SurfacePoint};
-use tenfold_math::Vec2;
+use tenfold_geometry::{
+    Primitive, Rectangle, ReferencePoint, ReferencePoints, Shape, ShapeSample, ShapeSamples, SurfacePoint,
+};
+use tenfold_math::{Slots, Vec2, Vec2s};
 
 /// Rectangles of larger meshes are not prepared, for the memory that this takes.
 const MOST_PREPARED: usize = 1 << 16;
@@ -56,6 +58,21 @@ impl<'a> Emitter<'a> {
             Some(rectangle) => rectangle.sample_from(from, u),
             None => self.primitive().sample_from(from, u),
         }
+    }
+
+    /// [`Emitter::sample_from`] for the points in `slots`, with a density of 0 in place of `None`; false where the kind of primitive has to be asked
+    /// for each by itself.
+    #[inline]
+    pub(super) fn samples_from(
+        &self,
+        slots: Slots,
+        from: &ReferencePoints,
+        u: &Vec2s,
+        out: &mut ShapeSamples,
+    ) -> bool {
+        let Some(rectangle) = self.rectangle else { return false };
+        rectangle.samples_from(slots, from, u, out);
+        true
     }
 
     /// [`Primitive::pdf_from_point`].

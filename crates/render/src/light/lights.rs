@@ -128,6 +128,19 @@ impl Lights {
         w: &SampledWavelengths,
     ) -> Option<LightSample> {
         let choice = self.choose(strategy, from, u_choice)?;
+        self.sample_chosen(strategy, &choice, from, u, w)
+    }
+
+    /// [`Lights::sample`] where the light is chosen.
+    #[inline]
+    pub(super) fn sample_chosen(
+        &self,
+        strategy: LightStrategy,
+        choice: &Choice,
+        from: &ReferencePoint,
+        u: Vec2,
+        w: &SampledWavelengths,
+    ) -> Option<LightSample> {
         let mut sample = self.all[choice.light].sample(strategy, from, u, w)?;
         sample.pdf *= choice.pmf;
         (sample.pdf > 0.0).then_some(sample)

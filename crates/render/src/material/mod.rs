@@ -192,6 +192,24 @@ impl Materials {
         Some(Bsdf::new(frame, bxdf))
     }
 
+    /// The albedo where a surface of this material is an even reflector without relief, whose frame is the shape's own: what
+    /// [`Materials::bsdf`] answers then is a [`Bxdf::Diffuse`] of it.
+    #[inline]
+    pub fn even_reflectance<'w>(
+        &self,
+        id: Id<Material>,
+        textures: &Textures,
+        at: &TextureContext,
+        waves: impl Into<Waves<'w>>,
+    ) -> Option<SampledSpectrum> {
+        match (&self.all[id.index()], &self.reliefs[id.index()]) {
+            (Material::Diffuse(m), Relief::Smooth) => {
+                Some(m.bxdf(&Point { textures, context: at, waves: waves.into() }).reflectance())
+            }
+            _ => None,
+        }
+    }
+
     /// The material itself, or the one that chance takes out of a mix.
     #[inline]
     fn resolve(

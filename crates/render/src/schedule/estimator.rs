@@ -2,10 +2,11 @@ use super::RenderSettings;
 use crate::{
     camera::{ShutterSample, TimeStrategy},
     filter::FilterSample,
-    integrator::{PathTracer, Workspace},
+    integrator::{PathTracer, Sample, Workspace},
     scene::Scene,
 };
-use tenfold_math::{Vec2, Vec3};
+use arrayvec::ArrayVec;
+use tenfold_math::{Vec2, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable};
 use tenfold_spectrum::SampledWavelengths;
 
@@ -36,7 +37,35 @@ impl<'a> PixelEstimator<'a> {
     }
 
     /// The linear RGB of one sample, which may not be finite, with the weights of filter and shutter in.
-    pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace) -> Vec3 {
+    pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace<'a>) -> Vec3 {
+        let mut rgb = Vec3::ZERO;
+        self.samples(std::slice::from_ref(sampler), workspace, |_, value| rgb = value);
+        rgb
+    }
+
+    /// Calls `take` with each of `samplers`, at most [`WIDTH`], and what [`PixelEstimator::sample`] is of it.
+    pub fn samples(
+        &self,
+        samplers: &[PixelSample<'_>],
+        workspace: &mut Workspace<'a>,
+        mut take: impl FnMut(&PixelSample<'_>, Vec3),
+    ) {
+        let mut weights = [0.0; WIDTH];
+        let mut samples = ArrayVec::<Sample<'_>, WIDTH>::new();
+        for (sampler, weight) in samplers.iter().zip(&mut weights) {
+            let (sample, w) = self.start(sampler);
+            *weight = w;
+            samples.push(sample);
+        }
+        self.tracer.trace(&mut samples, workspace);
+        for (sample, weight) in samples.iter().zip(weights) {
+            take(sample.sampler, self.scene.film.sensor.rgb(sample.radiance, &sample.wavelengths) * weight);
+        }
+    }
+
+    /// What is decided before light is traced, and its weight.
+    #[inline]
+    fn start<'s>(&self, sampler: &'s PixelSample<'s>) -> (Sample<'s>, f32) {
         let scene = self.scene;
         let filtered = match sampler.held(Variable::Pixel) {
             None => scene.filter.sample(sampler.get_2d(Dimension::PIXEL)),
@@ -52,7 +81,6 @@ impl<'a> PixelEstimator<'a> {
             Some(fraction) => ShutterSample { time: scene.camera.shutter.instant(fraction.x), weight: 1.0 },
         };
         let ray = scene.camera.ray(position, u_lens, shutter.time);
-        let radiance = self.tracer.radiance(ray, &wavelengths, sampler, workspace);
-        scene.film.sensor.rgb(radiance, &wavelengths) * (filtered.weight * shutter.weight)
+        (Sample::new(sampler, ray, wavelengths), filtered.weight * shutter.weight)
     }
 }

@@ -59,11 +59,12 @@ pub(super) fn render_item<'a>(
         let (sampler, indices) = samples(pixel);
         statistics.samples += indices.len() as u64;
         let sum = film.pixel_mut(pixel);
-        sampler.for_each(pixel, indices, &mut room, |sample| {
-            let rgb = estimator.sample(sample, &mut workspace);
-            if !sum.add(rgb) {
-                statistics.drop_sample(DroppedSample { pixel, index: sample.index() });
-            }
+        sampler.for_groups(pixel, indices, &mut room, |samples| {
+            estimator.samples(samples, &mut workspace, |sample, rgb| {
+                if !sum.add(rgb) {
+                    statistics.drop_sample(DroppedSample { pixel, index: sample.index() });
+                }
+            });
         });
     }
     statistics.rays = workspace.rays;

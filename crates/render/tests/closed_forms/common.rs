@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use tenfold_math::{Ray, UVec2, Vec2, Vec3};
 use tenfold_render::compile::compile;
 use tenfold_render::film::Film;
-use tenfold_render::integrator::{DispersionRule, PathTracer, Strategies, Workspace};
+use tenfold_render::integrator::{DispersionRule, PathTracer, Sample, Strategies, Workspace};
 use tenfold_render::scene::Scene;
 use tenfold_render::schedule::{PixelEstimator, RenderSettings, render};
 use tenfold_sampling::{Sampler, SamplerKind};
 use tenfold_scene::{Resources, SourceMap, read_pbrt_str};
-use tenfold_spectrum::{N, SampledWavelengths};
+use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
 use tenfold_testkit::Welford;
 use tenfold_testkit::stats::{t_test_mean, t_test_two};
 
@@ -98,7 +98,7 @@ pub(crate) fn radiance(
             let lambda = std::array::from_fn(|i| LAMBDA[(i + turn) % N]);
             let wavelengths = SampledWavelengths::new(lambda, [1.0; N]);
             let sample = sampler.at(UVec2::ZERO, value * N as u32 + turn as u32);
-            let l = tracer.radiance(ray, &wavelengths, &sample, &mut Workspace::default());
+            let l = traced(&tracer, Sample::new(&sample, ray, wavelengths));
             for i in 0..N {
                 sums[(i + turn) % N] += f64::from(l.lane(i)) / N as f64;
             }
@@ -106,6 +106,13 @@ pub(crate) fn radiance(
         moments.iter_mut().zip(sums).for_each(|(m, sum)| m.add(sum));
     }
     moments
+}
+
+/// The radiance of a sample.
+pub(crate) fn traced(tracer: &PathTracer<'_>, sample: Sample<'_>) -> SampledSpectrum {
+    let mut samples = [sample];
+    tracer.trace(&mut samples, &mut Workspace::default());
+    samples[0].radiance
 }
 
 /// A ray from `origin` toward `direction` at time 0.

@@ -1,9 +1,9 @@
 //! A prism spreads light into the directions of Snell's law, with the indices of the glass makers' catalogues.
 
-use super::common::{check_mean, fresnel, header, scene};
+use super::common::{check_mean, fresnel, header, scene, traced};
 use tenfold_math::{DVec3, Ray, UVec2, Vec2, Vec3};
 use tenfold_render::bxdf::Lobe;
-use tenfold_render::integrator::{DispersionRule, PathTracer, Strategies, Workspace};
+use tenfold_render::integrator::{DispersionRule, PathTracer, Sample, Strategies};
 use tenfold_render::scene::Scene;
 use tenfold_render::texture::TextureContext;
 use tenfold_sampling::{Sampler, SamplerKind};
@@ -157,7 +157,7 @@ fn a_slit_is_seen_where_it_is() {
                 let seen: Welford = (0..4000)
                     .map(|i| {
                         let sample = sampler.at(UVec2::ZERO, i);
-                        let l = tracer.radiance(incoming, &wavelengths, &sample, &mut Workspace::default());
+                        let l = traced(&tracer, Sample::new(&sample, incoming, wavelengths));
                         f64::from(l.average())
                     })
                     .collect();

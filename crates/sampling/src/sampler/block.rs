@@ -3,10 +3,10 @@
 use super::sobol::SobolSample;
 use crate::{Dimension, Variable};
 use std::cell::Cell;
-use tenfold_math::Vec2;
+use tenfold_math::{Vec2, WIDTH};
 
 /// Samples whose numbers are computed together.
-const LANES: usize = 16;
+const LANES: usize = WIDTH;
 /// The largest block of a Sobol' sampler.
 const SAMPLES: usize = 64;
 /// Vertices of a path whose numbers have room: few paths go further.

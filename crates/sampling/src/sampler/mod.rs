@@ -19,13 +19,14 @@ pub use plan::{Draw, SamplePlan};
 
 use crate::hash::{combine, unit_f32};
 use crate::{Dimension, Variable};
+use arrayvec::ArrayVec;
 use halton::{Halton, HaltonSample};
 use multi_jittered::{MultiJittered, MultiJitteredSample};
 use n_rooks::NRooksSample;
 use sobol::SobolSample;
 use std::ops::Range;
 use stratified::{Stratified, StratifiedSample};
-use tenfold_math::{UVec2, Vec2};
+use tenfold_math::{UVec2, Vec2, WIDTH};
 
 /// A rule that spreads the samples of a pixel, and of its neighbours, over all dimensions.
 ///
@@ -119,30 +120,39 @@ impl Sampler {
         }
     }
 
-    /// Calls `take` with each of the samples `indices` of `pixel`, in order. They have the numbers of [`Sampler::at`]; those of
-    /// neighbours are computed together, in `room`, where the sampler can.
+    /// Calls `take` with the samples `indices` of `pixel`, in order and up to `at_most` at a time. They have the numbers of
+    /// [`Sampler::at`]; those of neighbours are computed together, in `room`, where the sampler can.
     #[inline]
-    pub fn for_each(
+    pub fn for_groups(
         &self,
         pixel: UVec2,
         mut indices: Range<u32>,
         room: &mut SampleRoom,
-        mut take: impl FnMut(&PixelSample<'_>),
+        mut take: impl FnMut(&[PixelSample<'_>]),
     ) {
         while !indices.is_empty() {
             let first = self.at(pixel, indices.start);
-            let mut taken = 1;
+            let mut group = ArrayVec::<PixelSample<'_>, WIDTH>::new();
             match first.pattern {
                 Pattern::Sobol(sobol) if room.begin(sobol) => {
-                    taken = (sobol.block_size() - sobol.place()).min(indices.len() as u32);
+                    let lanes = WIDTH as u32;
+                    let place = sobol.place();
+                    let taken =
+                        (sobol.block_size() - place).min(indices.len() as u32).min(lanes - place % lanes);
                     for i in 0..taken {
-                        let kept = Some((&*room, sobol.place() + i));
-                        take(&PixelSample { index: first.index + i, kept, ..first });
+                        let kept = Some((&*room, place + i));
+                        group.push(PixelSample { index: first.index + i, kept, ..first });
                     }
                 }
-                _ => take(&first),
+                _ => {
+                    group.push(first);
+                    for index in indices.clone().skip(1).take(WIDTH - 1) {
+                        group.push(self.at(pixel, index));
+                    }
+                }
             }
-            indices.start += taken;
+            take(&group);
+            indices.start += group.len() as u32;
         }
     }
 

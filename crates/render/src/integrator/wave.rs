@@ -1,0 +1,88 @@
+use super::path::{Path, Waiting};
+use crate::bxdf::Bsdf;
+use tenfold_geometry::{ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
+use tenfold_math::{Rays, Slots, Vec3s, WIDTH};
+use tenfold_spectrum::SampledSpectrum;
+
+/// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
+/// instructions.
+#[derive(Debug)]
+pub(super) struct Wave<'a> {
+    pub(super) paths: [Path; WIDTH],
+    /// Where the paths go next.
+    pub(super) rays: Rays,
+    /// Their last vertices.
+    pub(super) from: ReferencePoints,
+    /// Unit directions from there to where they came from.
+    pub(super) wo: Vec3s,
+    /// What even reflectors are at these vertices.
+    pub(super) even: EvenReflectors,
+    /// How light is scattered at these vertices, where they are not even reflectors.
+    pub(super) bsdfs: [Option<Bsdf<'a>>; WIDTH],
+}
+
+/// Surfaces that reflect the same radiance in all directions.
+#[derive(Debug)]
+pub(super) struct EvenReflectors {
+    /// Unit shading normals.
+    pub(super) n: Vec3s,
+    /// Directions to which the first axes of the shading frames are nearest.
+    pub(super) tangent: Vec3s,
+    pub(super) reflectance: [SampledSpectrum; WIDTH],
+}
+
+/// The slots whose paths have come to a vertex from which they go on, by what they met.
+#[derive(Copy, Clone, Debug, Default)]
+pub(super) struct Vertices {
+    /// At even reflectors.
+    pub(super) even: Slots,
+    /// At other surfaces.
+    pub(super) other: Slots,
+    /// Those of `other` that scatter not only in single directions.
+    pub(super) glossy: Slots,
+    /// Those of `other` whose wavelengths part.
+    pub(super) parting: Slots,
+}
+
+impl Default for Wave<'_> {
+    fn default() -> Self {
+        Self {
+            paths: [Path::from_camera(0); WIDTH],
+            rays: Rays::default(),
+            from: ReferencePoints::default(),
+            wo: Vec3s::ZERO,
+            even: EvenReflectors {
+                n: Vec3s::ZERO,
+                tangent: Vec3s::ZERO,
+                reflectance: [SampledSpectrum::ZERO; WIDTH],
+            },
+            bsdfs: [const { None }; WIDTH],
+        }
+    }
+}
+
+impl EvenReflectors {
+    #[inline]
+    pub(super) fn set(&mut self, slot: usize, shading: &Shading, reflectance: SampledSpectrum) {
+        self.n.set(slot, shading.n);
+        self.tangent.set(slot, shading.dpdu);
+        self.reflectance[slot] = reflectance;
+    }
+}
+
+impl Wave<'_> {
+    /// Puts a path that has waited into the first slot.
+    pub(super) fn resume(&mut self, waiting: Waiting) -> Slots {
+        self.paths[0] = waiting.path;
+        self.rays.set(0, waiting.ray);
+        self.from.set(0, waiting.from);
+        Slots::first(1)
+    }
+
+    /// Puts the path in a slot at a vertex.
+    #[inline]
+    pub(super) fn arrive(&mut self, slot: usize, from: ReferencePoint, surface: &SurfaceInteraction) {
+        self.from.set(slot, from);
+        self.wo.set(slot, surface.wo);
+    }
+}

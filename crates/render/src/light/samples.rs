@@ -1,0 +1,130 @@
+//! Light sampled for many points side by side.
+
+use super::lights::{Choice, Lights};
+use super::{Light, LightSample, LightStrategy, ShadowRay};
+use tenfold_geometry::{ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
+use tenfold_math::{Floats, Id, Rays, Slots, Vec2s, Vec3s, WIDTH, vectorized};
+use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// With fewer points that see the same light, each is served by itself.
+const WORTHWHILE: usize = 3;
+
+/// What a [`LightSample`] says, and its shadow ray, in each slot that has one.
+#[derive(Clone, Debug, Default)]
+pub struct LightSamples {
+    /// See [`LightSample::radiance`].
+    pub radiance: [SampledSpectrum; WIDTH],
+    /// See [`LightSample::wi`].
+    pub wi: Vec3s,
+    /// See [`LightSample::pdf`].
+    pub pdf: Floats,
+    /// Slots of lights that no other way of sampling finds.
+    pub delta: Slots,
+    /// See [`LightSample::shadow_ray`].
+    pub shadow: Rays,
+    /// See [`ShadowRay::t_max`].
+    pub t_max: Floats,
+    /// Room for points on lights.
+    points: ShapeSamples,
+}
+
+impl LightSamples {
+    /// The shadow ray of a slot.
+    #[inline]
+    pub fn shadow_ray(&self, slot: usize) -> ShadowRay {
+        ShadowRay { ray: self.shadow.get(slot), t_max: self.t_max[slot] }
+    }
+
+    #[inline]
+    fn set(&mut self, slot: usize, sample: &LightSample, shadow: ShadowRay) {
+        self.radiance[slot] = sample.radiance;
+        self.wi.set(slot, sample.wi);
+        self.pdf[slot] = sample.pdf;
+        if sample.delta {
+            self.delta.insert(slot);
+        }
+        self.shadow.set(slot, shadow.ray);
+        self.t_max[slot] = shadow.t_max;
+    }
+}
+
+impl Lights {
+    /// [`Lights::sample`] for the points `from` in `slots`, and the slots for which there is light. The numbers of the slots are in
+    /// `u_choice` and `u`, and `wavelengths` tells theirs.
+    pub fn samples<'w>(
+        &self,
+        strategy: LightStrategy,
+        slots: Slots,
+        from: &ReferencePoints,
+        u_choice: &Floats,
+        u: &Vec2s,
+        wavelengths: impl Fn(usize) -> &'w SampledWavelengths,
+        out: &mut LightSamples,
+    ) -> Slots {
+        out.delta = Slots::NONE;
+        let mut choices = [const { Choice { light: 0, pmf: 0.0 } }; WIDTH];
+        let mut left = Slots::NONE;
+        for slot in slots {
+            if let Some(choice) = self.choose(strategy, &from.get(slot), u_choice[slot]) {
+                choices[slot] = choice;
+                left.insert(slot);
+            }
+        }
+        let mut lit = Slots::NONE;
+        while let Some(first) = left.into_iter().next() {
+            let light = choices[first].light;
+            let same = left.keep(|slot| choices[slot].light == light);
+            left = left.without(same);
+            if same.len() >= WORTHWHILE
+                && let Light::Area(area) = self.get(Id::new(light))
+                && area.points_from(strategy, same, from, u, &mut out.points)
+            {
+                let mut seen = [false; WIDTH];
+                same.for_each(|slot| seen[slot] = true);
+                aim(from, area.is_two_sided(), out, &mut seen);
+                for slot in same.keep(|slot| seen[slot]) {
+                    out.pdf[slot] = out.points.pdf[slot] * choices[slot].pmf;
+                    out.radiance[slot] = area.even_radiance(wavelengths(slot));
+                    if out.pdf[slot] > 0.0 && !out.radiance[slot].is_black() {
+                        lit.insert(slot);
+                        if area.is_invisible() {
+                            out.delta.insert(slot);
+                        }
+                    }
+                }
+                continue;
+            }
+            for slot in same {
+                let point = from.get(slot);
+                let sample =
+                    self.sample_chosen(strategy, &choices[slot], &point, u.get(slot), wavelengths(slot));
+                if let Some(sample) = &sample {
+                    out.set(slot, sample, sample.shadow_ray(&point));
+                    lit.insert(slot);
+                }
+            }
+        }
+        lit
+    }
+}
+
+vectorized! {
+    /// Directions and shadow rays to points on a light, in the slots that are `seen`: it stays so where there is a point, and on a side that emits.
+    fn aim(from: &ReferencePoints, two_sided: bool, out: &mut LightSamples, seen: &mut [bool; WIDTH]) {
+        for i in 0..WIDTH {
+            let (start, start_error, start_n) = (from.p.get(i), from.p_error.get(i), from.n.get(i));
+            let (end, end_error, end_n) = (out.points.p.get(i), out.points.p_error.get(i), out.points.n.get(i));
+            let to_light = end - start;
+            let distance_squared = to_light.length_squared();
+            let wi = to_light / distance_squared.sqrt();
+            let shadow = ray_between(start, start_error, start_n, end, end_error, end_n, from.time[i]);
+            // Other slots may have light of other kinds already.
+            let was_seen = seen[i];
+            out.wi.set(i, if was_seen { wi } else { out.wi.get(i) });
+            let faces = two_sided | (end_n.dot(-wi) > 0.0);
+            seen[i] = was_seen & faces & (distance_squared != 0.0) & (out.points.pdf[i] > 0.0);
+            out.shadow.set(i, if was_seen { shadow } else { out.shadow.get(i) });
+            out.t_max[i] = if was_seen { SHADOW_T_MAX } else { out.t_max[i] };
+        }
+    }
+}
