@@ -152,10 +152,13 @@ pub fn ray_between(p0: Vec3, p0_error: Vec3, n0: Vec3, p1: Vec3, p1_error: Vec3,
 }
 
 /// Unit direction to where a ray came from.
-#[inline]
+#[inline(always)]
 pub(crate) fn toward_origin(ray: &Ray) -> Vec3 {
     let d = ray.direction;
+    let squared = d.length_squared();
     // Most are of unit length already, up to rounding.
-    let is_unit = (d.length_squared() - 1.0).abs() <= 4.0 * f32::EPSILON;
-    if is_unit { -d } else { -d.normalize_or(Vec3::NEG_Z) }
+    let is_unit = (squared - 1.0).abs() <= 4.0 * f32::EPSILON;
+    let scale = if is_unit { 1.0 } else { 1.0 / squared.sqrt() };
+    let has_direction = scale > 0.0 && scale.is_finite();
+    if has_direction { -(d * scale) } else { Vec3::Z }
 }

@@ -30,4 +30,4 @@ pub use shape::{
     ShapeHit, Sphere, SphereParams, Triangle,
 };
 pub use subdivision::{SubdivisionError, loop_subdivide};
-pub use world::{Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};
+pub use world::{FlatSurfaces, Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};

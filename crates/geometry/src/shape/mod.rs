@@ -15,8 +15,8 @@ pub use disk::{Disk, DiskParams};
 pub use quadric::ShapeError;
 pub use rectangle::Rectangle;
 pub use sphere::{Sphere, SphereParams};
-pub(crate) use triangle::RayShear;
 pub use triangle::Triangle;
+pub(crate) use triangle::{FlatTriangle, RayShear};
 
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
@@ -195,7 +195,7 @@ impl Primitive<'_> {
 }
 
 /// The unit vector across two others, `None` where that vanishes; in double precision, where products of tiny edges do not.
-#[inline]
+#[inline(always)]
 fn unit_cross(a: Vec3, b: Vec3) -> Option<Vec3> {
     let across = a.as_dvec3().cross(b.as_dvec3());
     let squared = across.length_squared();

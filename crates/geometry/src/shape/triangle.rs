@@ -36,8 +36,7 @@ impl<'a> Triangle<'a> {
     /// Unit normal by the order of the vertices; zero without area.
     #[inline(always)]
     fn vertex_order_normal(&self) -> Vec3 {
-        let [a, b, c] = self.positions();
-        unit_cross(b - a, c - a).unwrap_or_default()
+        vertex_order_normal(self.positions())
     }
 
     /// The geometric normal at barycentric weights `b`.
@@ -84,12 +83,11 @@ impl<'a> Triangle<'a> {
 
     #[inline(always)]
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let p = self.positions();
-        let b = weights(hit.u, hit.v);
-        let order_n = self.vertex_order_normal();
+        let flat = FlatTriangle::at(self.positions(), hit.u, hit.v);
+        let FlatTriangle { corners: p, weights: b } = flat;
+        let order_n = flat.vertex_order_normal();
         let (uv, [dpdu, dpdv]) = if self.mesh.parts().uvs.is_none() {
-            // What the chart would give, up to rounding.
-            (Vec2::new(b[1] + b[2], b[2]), [p[1] - p[0], p[2] - p[1]])
+            (flat.uv(), flat.derivatives())
         } else {
             let chart = self.chart();
             let derivatives = if chart.is_degenerate() {
@@ -102,8 +100,8 @@ impl<'a> Triangle<'a> {
             (mix(b, chart.uvs), derivatives)
         };
         let mut surface = SurfaceInteraction::new(
-            mix(b, p),
-            gamma(7) * mix(b.map(f32::abs), p.map(Vec3::abs)),
+            flat.p(),
+            flat.p_error(),
             if self.mesh.flip { -order_n } else { order_n },
             uv,
             Vec2::new(hit.u, hit.v),
@@ -216,6 +214,60 @@ impl<'a> Triangle<'a> {
     }
 }
 
+/// A point of a triangle by itself, without what a mesh adds to it.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct FlatTriangle {
+    corners: [Vec3; 3],
+    /// Barycentric.
+    weights: [f32; 3],
+}
+
+impl FlatTriangle {
+    /// The point with the barycentric weights `u` and `v` of the second and the third corner.
+    #[inline(always)]
+    pub(crate) fn at(corners: [Vec3; 3], u: f32, v: f32) -> Self {
+        Self { corners, weights: weights(u, v) }
+    }
+
+    /// The point.
+    #[inline(always)]
+    pub(crate) fn p(&self) -> Vec3 {
+        mix(self.weights, self.corners)
+    }
+
+    /// Bound on its absolute error.
+    #[inline(always)]
+    pub(crate) fn p_error(&self) -> Vec3 {
+        gamma(7) * mix(self.weights.map(f32::abs), self.corners.map(Vec3::abs))
+    }
+
+    /// Unit normal by the order of the corners; zero without area.
+    #[inline(always)]
+    pub(crate) fn vertex_order_normal(&self) -> Vec3 {
+        vertex_order_normal(self.corners)
+    }
+
+    /// Texture coordinates where the mesh has none.
+    #[inline(always)]
+    pub(crate) fn uv(&self) -> Vec2 {
+        let [_, b1, b2] = self.weights;
+        Vec2::new(b1 + b2, b2)
+    }
+
+    /// Derivatives of the point by these: what [`Chart::derivatives`] would give, up to rounding.
+    #[inline(always)]
+    pub(crate) fn derivatives(&self) -> [Vec3; 2] {
+        let [a, b, c] = self.corners;
+        [b - a, c - b]
+    }
+}
+
+/// Unit normal by the order of the corners; zero without area.
+#[inline(always)]
+fn vertex_order_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    unit_cross(b - a, c - a).unwrap_or_default()
+}
+
 /// The texture coordinates over a triangle.
 struct Chart {
     /// At the vertices.
@@ -248,11 +300,13 @@ impl Chart {
 }
 
 /// Barycentric weights from the second and third.
+#[inline(always)]
 fn weights(b1: f32, b2: f32) -> [f32; 3] {
     [1.0 - b1 - b2, b1, b2]
 }
 
 /// A weighted sum.
+#[inline(always)]
 fn mix<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>(b: [f32; 3], [x, y, z]: [T; 3]) -> T {
     x * b[0] + y * b[1] + z * b[2]
 }

@@ -1,5 +1,6 @@
 //! Everything that rays can hit, immutable once built.
 
+mod flat;
 mod hierarchies;
 mod search;
 
@@ -7,6 +8,7 @@ use crate::{
     Candidate, Hit, InstanceId, Primitive, PrimitiveId, Shape, ShapeHit, SurfaceInteraction, bvh::Level,
     interaction::toward_origin,
 };
+pub use flat::FlatSurfaces;
 use hierarchies::Hierarchies;
 use search::{Search, State};
 use tenfold_math::{Bounds3, Id, Motion, Ray, Transform, Vec2, Vec3};

@@ -12,7 +12,7 @@ use crate::{
     scene::{Scene, Surface},
     texture::TextureContext,
 };
-use tenfold_geometry::{Candidate, Hit, ReferencePoint, SurfaceInteraction};
+use tenfold_geometry::{Candidate, FlatSurfaces, Hit, PrimitiveId, ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
@@ -79,6 +79,7 @@ impl<'s> Sample<'s> {
 #[derive(Debug, Default)]
 pub struct Workspace<'a> {
     wave: Wave<'a>,
+    surfaces: FlatSurfaces,
     lights: LightSamples,
     scattering: EvenScattering,
     /// Paths that wait for their turn. Every split leaves each lane on one path only: a sample has never more than lanes.
@@ -122,18 +123,69 @@ impl<'a> PathTracer<'a> {
 
     /// Takes the paths in the slots `live` to their next vertices, or to their ends.
     fn go_on(&self, live: Slots, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) -> Vertices {
-        let Workspace { wave, rays, .. } = workspace;
+        let Workspace { wave, surfaces, rays, .. } = workspace;
         let mut hits = [None; WIDTH];
         for slot in live {
             let path = &wave.paths[slot];
             hits[slot] = self.intersect(&wave.rays.get(slot), path, &samples[path.sample], rays);
         }
         let mut vertices = Vertices::default();
-        for slot in live {
+        let flat = self.meet_flat(live, &hits, samples, wave, surfaces, &mut vertices);
+        for slot in live.without(flat) {
             let sample = &mut samples[wave.paths[slot].sample];
             self.meet(slot, hits[slot], sample, wave, rays, &mut vertices);
         }
         vertices
+    }
+
+    /// Takes those of the paths in the slots `live` to their next vertices, or to their ends, that have met what most surfaces are: flat even reflectors.
+    /// Returns their slots.
+    fn meet_flat(
+        &self,
+        live: Slots,
+        hits: &[Option<Hit>; WIDTH],
+        samples: &[Sample<'_>],
+        wave: &mut Wave<'a>,
+        surfaces: &mut FlatSurfaces,
+        vertices: &mut Vertices,
+    ) -> Slots {
+        let scene = self.scene;
+        if scene.needs_footprint || self.strategies.scatter != ScatterStrategy::Bsdf {
+            return Slots::NONE;
+        }
+        let (mut ended, mut candidates) = (Slots::NONE, Slots::NONE);
+        for slot in live {
+            let Some(hit) = &hits[slot] else { continue };
+            let look = self.look(hit.primitive);
+            if look.lights.is_some() {
+                continue;
+            }
+            let at_end = wave.paths[slot].bounce >= scene.max_depth;
+            if at_end && !scene.materials.may_be_interface(look.material) {
+                ended.insert(slot);
+            } else if scene.materials.is_even_reflector(look.material) {
+                candidates.insert(slot);
+            }
+        }
+        let flat = scene.world.flat_surfaces(candidates, &wave.rays, hits, surfaces);
+        for slot in flat {
+            let Some(hit) = &hits[slot] else { continue };
+            let at = TextureContext {
+                p: surfaces.p.get(slot),
+                n: surfaces.n.get(slot),
+                uv: surfaces.uv.get(slot),
+                face_index: surfaces.face_index[slot],
+                ..TextureContext::default()
+            };
+            let waves = self.waves(&samples[wave.paths[slot].sample]);
+            let material = self.look(hit.primitive).material;
+            let reflectance = scene.materials.even_reflectance(material, &scene.textures, &at, waves);
+            if let Some(reflectance) = reflectance.filter(|r| !r.is_black()) {
+                wave.arrive_flat(slot, surfaces, reflectance);
+                vertices.even.insert(slot);
+            }
+        }
+        ended.or(flat)
     }
 
     /// What a path next meets.
@@ -168,7 +220,7 @@ impl<'a> PathTracer<'a> {
             let surface = scene.world.interaction(&ray, found);
             self.add_emitted(path, &ray, || last.get(slot), &surface, sample);
             let at_end = path.bounce >= scene.max_depth;
-            let material = self.look(&surface).material;
+            let material = self.look(surface.primitive).material;
             // A path that has met all the surfaces it may still passes those that are none.
             if at_end && !scene.materials.may_be_interface(material) {
                 return;
@@ -260,7 +312,7 @@ impl<'a> PathTracer<'a> {
             // Surfaces behind an interface are at the same vertex, and need numbers of their own.
             hash::unit_f32(hash::combine(sample.sampler.hash(dimension), passes.into()) as u32)
         };
-        let material = self.look(surface).material;
+        let material = self.look(surface.primitive).material;
         let mut bsdf =
             scene.materials.bsdf(material, &scene.textures, surface, at, self.waves(sample), u_mix);
         if let Some(bsdf) = &mut bsdf {
@@ -274,8 +326,8 @@ impl<'a> PathTracer<'a> {
 
     /// What a surface that was hit looks like.
     #[inline]
-    fn look(&self, surface: &SurfaceInteraction) -> &'a Surface {
-        let geometry = self.scene.world.geometry(surface.primitive.geometry);
+    fn look(&self, primitive: PrimitiveId) -> &'a Surface {
+        let geometry = self.scene.world.geometry(primitive.geometry);
         &self.scene.surfaces[geometry.user as usize]
     }
 
@@ -310,7 +362,7 @@ impl<'a> PathTracer<'a> {
         sample: &mut Sample<'_>,
     ) {
         let lights = &self.scene.lights;
-        let Some(id) = self.look(surface).light(surface.primitive) else { return };
+        let Some(id) = self.look(surface.primitive).light(surface.primitive) else { return };
         let emitted = lights.emitted(id, surface, surface.wo, &sample.wavelengths);
         if emitted.is_black() {
             return;

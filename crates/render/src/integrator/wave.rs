@@ -1,6 +1,6 @@
 use super::path::{Path, Waiting};
 use crate::bxdf::Bsdf;
-use tenfold_geometry::{ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
+use tenfold_geometry::{FlatSurfaces, ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
 use tenfold_math::{Rays, Slots, Vec3s, WIDTH};
 use tenfold_spectrum::SampledSpectrum;
 
@@ -77,6 +77,19 @@ impl Wave<'_> {
         self.rays.set(0, waiting.ray);
         self.from.set(0, waiting.from);
         Slots::first(1)
+    }
+
+    /// Puts the path in a slot at a vertex on a flat even reflector.
+    #[inline]
+    pub(super) fn arrive_flat(&mut self, slot: usize, surfaces: &FlatSurfaces, reflectance: SampledSpectrum) {
+        let (n, wo) = (surfaces.n.get(slot), surfaces.wo.get(slot));
+        let (p, p_error, time) = (surfaces.p.get(slot), surfaces.p_error.get(slot), self.rays.time[slot]);
+        let from = ReferencePoint { p, p_error, n, ns: n, one_sided: false, time };
+        self.from.set(slot, from.seen_from(wo));
+        self.wo.set(slot, wo);
+        self.even.n.set(slot, n);
+        self.even.tangent.set(slot, surfaces.dpdu.get(slot));
+        self.even.reflectance[slot] = reflectance;
     }
 
     /// Puts the path in a slot at a vertex.

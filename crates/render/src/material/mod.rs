@@ -192,8 +192,13 @@ impl Materials {
         Some(Bsdf::new(frame, bxdf))
     }
 
-    /// The albedo where a surface of this material is an even reflector without relief, whose frame is the shape's own: what
-    /// [`Materials::bsdf`] answers then is a [`Bxdf::Diffuse`] of it.
+    /// Whether surfaces of this material are even reflectors without relief, whose frames are the shapes' own.
+    #[inline]
+    pub fn is_even_reflector(&self, id: Id<Material>) -> bool {
+        matches!((&self.all[id.index()], &self.reliefs[id.index()]), (Material::Diffuse(_), Relief::Smooth))
+    }
+
+    /// The albedo of such a surface: what [`Materials::bsdf`] answers is a [`Bxdf::Diffuse`] of it. `None` of others.
     #[inline]
     pub fn even_reflectance<'w>(
         &self,
