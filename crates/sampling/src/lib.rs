@@ -18,4 +18,4 @@ pub use distribution::{
     AliasTable, PiecewiseConstant1D, PiecewiseConstant2D, PiecewiseLinear1D, sample_discrete,
 };
 pub use hash::{hash, mix_bits};
-pub use sampler::{Draw, Mapped, PixelSample, SamplePlan, SampleRoom, Sampler, SamplerKind};
+pub use sampler::{Draw, Mapped, PixelSample, SampleGroup, SamplePlan, SampleRoom, Sampler, SamplerKind};

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use tenfold_math::ops;
-use tenfold_math::{UVec2, Vec2};
+use tenfold_math::{Slots, UVec2, Vec2};
 use tenfold_sampling::{Dimension, PixelSample, SampleRoom, Sampler, SamplerKind, Variable};
 use tenfold_testkit::{Options, Rng, Welford, chi2, t_test_mean};
 
@@ -380,20 +380,27 @@ fn samples_taken_in_turn_have_the_numbers_of_each_alone() {
             (UVec2::new(70_000, 1), 1..n.min(20)),
         ] {
             let mut next = indices.start;
-            s.for_groups(pixel, indices.clone(), &mut room, |samples| {
-                samples.iter().for_each(|sample| {
-                    let alone = s.at(pixel, next);
-                    assert_eq!((sample.pixel(), sample.index()), (pixel, next));
-                    for bounce in [0, 1, 7, 8, 300] {
-                        for variable in Variable::ALL {
-                            let d = Dimension::new(variable, bounce);
-                            assert_eq!(sample.get_1d(d), alone.get_1d(d), "{s:?} {d:?}");
-                            assert_eq!(sample.get_2d(d), alone.get_2d(d), "{s:?} {d:?}");
-                            assert_eq!(sample.hash(d), alone.hash(d), "{s:?} {d:?}");
+            s.for_groups(pixel, indices.clone(), &mut room, |group| {
+                for d in [0, 1, 7, 8, 300].iter().flat_map(|&b| Variable::ALL.map(|v| Dimension::new(v, b))) {
+                    // Asked for all of them before or after each of them.
+                    let asked = (d.bounce % 2 == 1).then(|| group.get_2d(group.slots(), d));
+                    for (sample, index) in group.iter().zip(next..) {
+                        let alone = s.at(pixel, index);
+                        assert_eq!((sample.pixel(), sample.index()), (pixel, index));
+                        assert_eq!(sample.get_1d(d), alone.get_1d(d), "{s:?} {d:?}");
+                        assert_eq!(sample.get_2d(d), alone.get_2d(d), "{s:?} {d:?}");
+                        assert_eq!(sample.hash(d), alone.hash(d), "{s:?} {d:?}");
+                    }
+                    let all = asked.unwrap_or_else(|| group.get_2d(group.slots(), d));
+                    let (some, few) = (group.slots().keep(|slot| slot % 3 == 2), Slots::first(1));
+                    for (slot, sample) in group.iter().enumerate() {
+                        assert_eq!(all.get(slot), sample.get_2d(d), "{s:?} {d:?}");
+                        for slots in [group.slots(), some, few].into_iter().filter(|s| s.contains(slot)) {
+                            assert_eq!(group.get_1d(slots, d)[slot], sample.get_1d(d), "{s:?} {d:?}");
                         }
                     }
-                    next += 1;
-                })
+                }
+                next += group.len() as u32;
             });
             assert_eq!(next, indices.end.max(indices.start));
         }

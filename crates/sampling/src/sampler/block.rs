@@ -3,7 +3,7 @@
 use super::sobol::SobolSample;
 use crate::{Dimension, Variable};
 use std::cell::Cell;
-use tenfold_math::{Vec2, WIDTH};
+use tenfold_math::{Vec2, Vec2s, WIDTH, vectorized};
 
 /// Samples whose numbers are computed together.
 const LANES: usize = WIDTH;
@@ -16,8 +16,41 @@ const VARIABLES: usize = Variable::ALL.len();
 /// Dimensions whose numbers have room.
 const SLOTS: usize = BOUNCES * VARIABLES;
 
-/// The numbers of a dimension, in groups that are computed together.
-type Row = [[Cell<Vec2>; LANES]; GROUPS];
+/// The numbers of a dimension of samples that are computed together.
+#[derive(Debug, Default)]
+#[repr(align(64))]
+struct Row {
+    x: [Cell<f32>; LANES],
+    y: [Cell<f32>; LANES],
+}
+
+impl Row {
+    #[inline]
+    fn get(&self, lane: usize) -> Vec2 {
+        Vec2::new(self.x[lane].get(), self.y[lane].get())
+    }
+
+    /// The numbers from the lane `first` on, in the first slots.
+    #[inline]
+    fn from(&self, first: usize) -> Vec2s {
+        let mut numbers = Vec2s::ZERO;
+        // Nearly always all of them, by moves of a length that is known.
+        if first == 0 {
+            (0..LANES).for_each(|lane| numbers.set(lane, self.get(lane)));
+        } else {
+            (first..LANES).for_each(|lane| numbers.set(lane - first, self.get(lane)));
+        }
+        numbers
+    }
+
+    #[inline]
+    fn set(&self, numbers: &Vec2s) {
+        for lane in 0..LANES {
+            self.x[lane].set(numbers.x[lane]);
+            self.y[lane].set(numbers.y[lane]);
+        }
+    }
+}
 
 /// Room for the numbers of the samples of one pixel that share a block, to be used again for block after block.
 ///
@@ -32,7 +65,7 @@ pub struct SampleRoom {
     /// have been asked for: one sample alone may be all that ever asks.
     known: [Cell<u8>; SLOTS],
     /// For every dimension; empty before the first block.
-    numbers: Vec<Row>,
+    numbers: Vec<[Row; GROUPS]>,
 }
 
 impl Default for SampleRoom {
@@ -47,7 +80,7 @@ impl SampleRoom {
         if sample.block_size() < 8 {
             return false;
         }
-        self.numbers.resize_with(SLOTS, Row::default);
+        self.numbers.resize_with(SLOTS, Default::default);
         let block = Some(sample.at_place(0));
         if self.block != block {
             self.block = block;
@@ -59,51 +92,68 @@ impl SampleRoom {
     /// Both numbers of a dimension of the sample at `place` of the block.
     #[inline]
     pub(super) fn get(&self, place: u32, dimension: Dimension) -> Vec2 {
-        let slot = usize::from(dimension.bounce) * VARIABLES + dimension.variable as usize;
-        let (group, lane) = (place as usize / LANES, place as usize % LANES);
+        let (slot, group, lane) = locate(place, dimension);
         match self.known.get(slot) {
-            Some(known) if known.get() >> group & 1 != 0 => self.numbers[slot][group][lane].get(),
+            Some(known) if known.get() >> group & 1 != 0 => self.numbers[slot][group].get(lane),
             _ => self.compute(place, dimension),
         }
+    }
+
+    /// The same of that sample and those after it that are computed with it, in the first slots.
+    #[inline]
+    pub(super) fn get_lanes(&self, place: u32, dimension: Dimension) -> Vec2s {
+        let (slot, group, lane) = locate(place, dimension);
+        let Some(known) = self.known.get(slot) else { return self.lanes(place, dimension) };
+        if known.get() >> group & 1 == 0 {
+            self.fill(place, dimension);
+        }
+        self.numbers[slot][group].from(lane)
     }
 
     #[cold]
     fn compute(&self, place: u32, dimension: Dimension) -> Vec2 {
         let Some(block) = &self.block else { return Vec2::ZERO };
-        let slot = usize::from(dimension.bounce) * VARIABLES + dimension.variable as usize;
-        let (group, lane) = (place as usize / LANES, place as usize % LANES);
+        let (slot, group, lane) = locate(place, dimension);
         let asked = 1 << (GROUPS + group);
-        let known = match self.known.get(slot) {
-            Some(known) if known.get() & asked != 0 => known,
+        match self.known.get(slot) {
+            Some(known) if known.get() & asked != 0 => {
+                self.fill(place, dimension);
+                self.numbers[slot][group].get(lane)
+            }
             slot => {
                 slot.inspect(|known| known.set(known.get() | asked));
-                return block.at_place(place).get_2d(dimension.key());
+                block.at_place(place).get_2d(dimension.key())
             }
-        };
-        let [x, y] = lanes(block, dimension.key(), (group * LANES) as u32);
-        let row = &self.numbers[slot][group];
-        row.iter().zip(x.into_iter().zip(y)).for_each(|(cell, (x, y))| cell.set(Vec2::new(x, y)));
-        known.set(known.get() | 1 << group);
-        row[lane].get()
+        }
+    }
+
+    /// Makes known the numbers of the group that the sample at `place` is in, of a dimension that has room.
+    fn fill(&self, place: u32, dimension: Dimension) {
+        let (slot, group, lane) = locate(place, dimension);
+        self.numbers[slot][group].set(&self.lanes(place - lane as u32, dimension));
+        self.known[slot].set(self.known[slot].get() | 1 << group);
+    }
+
+    /// The numbers of [`LANES`] samples from that at the place `first`.
+    fn lanes(&self, first: u32, dimension: Dimension) -> Vec2s {
+        let mut numbers = Vec2s::ZERO;
+        if let Some(block) = &self.block {
+            lanes(block, dimension.key(), first, &mut numbers);
+        }
+        numbers
     }
 }
 
-/// The numbers of [`LANES`] samples.
-#[cfg(target_arch = "x86_64")]
-fn lanes(block: &SobolSample, key: u32, first: u32) -> [[f32; LANES]; 2] {
-    #[target_feature(enable = "avx2")]
-    fn avx2(block: &SobolSample, key: u32, first: u32) -> [[f32; LANES]; 2] {
-        block.get_lanes(key, first)
-    }
-    if is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has the instructions.
-        return unsafe { avx2(block, key, first) };
-    }
-    block.get_lanes(key, first)
+/// Where the numbers of a dimension are, and which group and lane a sample has there.
+#[inline]
+fn locate(place: u32, dimension: Dimension) -> (usize, usize, usize) {
+    let slot = usize::from(dimension.bounce) * VARIABLES + dimension.variable as usize;
+    (slot, place as usize / LANES, place as usize % LANES)
 }
 
-/// The numbers of [`LANES`] samples.
-#[cfg(not(target_arch = "x86_64"))]
-fn lanes(block: &SobolSample, key: u32, first: u32) -> [[f32; LANES]; 2] {
-    block.get_lanes(key, first)
+vectorized! {
+    /// The numbers of [`LANES`] samples.
+    fn lanes(block: &SobolSample, key: u32, first: u32, out: &mut Vec2s) {
+        [out.x, out.y] = block.get_lanes(key, first);
+    }
 }

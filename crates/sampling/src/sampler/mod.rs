@@ -1,6 +1,7 @@
 //! Samplers: from (seed, pixel, sample index, dimension) to numbers in `[0, 1)`.
 
 mod block;
+mod group;
 mod halton;
 mod kind;
 mod multi_jittered;
@@ -14,12 +15,12 @@ mod stratum;
 mod zsobol;
 
 pub use block::SampleRoom;
+pub use group::SampleGroup;
 pub use kind::{Mapped, SamplerKind};
 pub use plan::{Draw, SamplePlan};
 
 use crate::hash::{combine, unit_f32};
 use crate::{Dimension, Variable};
-use arrayvec::ArrayVec;
 use halton::{Halton, HaltonSample};
 use multi_jittered::{MultiJittered, MultiJitteredSample};
 use n_rooks::NRooksSample;
@@ -128,11 +129,11 @@ impl Sampler {
         pixel: UVec2,
         mut indices: Range<u32>,
         room: &mut SampleRoom,
-        mut take: impl FnMut(&[PixelSample<'_>]),
+        mut take: impl FnMut(&SampleGroup<'_>),
     ) {
         while !indices.is_empty() {
             let first = self.at(pixel, indices.start);
-            let mut group = ArrayVec::<PixelSample<'_>, WIDTH>::new();
+            let mut group = SampleGroup::default();
             match first.pattern {
                 Pattern::Sobol(sobol) if room.begin(sobol) => {
                     let lanes = WIDTH as u32;
@@ -141,13 +142,13 @@ impl Sampler {
                         (sobol.block_size() - place).min(indices.len() as u32).min(lanes - place % lanes);
                     for i in 0..taken {
                         let kept = Some((&*room, place + i));
-                        group.push(PixelSample { index: first.index + i, kept, ..first });
+                        group.0.push(PixelSample { index: first.index + i, kept, ..first });
                     }
                 }
                 _ => {
-                    group.push(first);
+                    group.0.push(first);
                     for index in indices.clone().skip(1).take(WIDTH - 1) {
-                        group.push(self.at(pixel, index));
+                        group.0.push(self.at(pixel, index));
                     }
                 }
             }

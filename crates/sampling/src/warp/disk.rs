@@ -5,7 +5,7 @@ use tenfold_math::ops;
 
 /// A uniform point of the unit disk, by the concentric map (Shirley and Chiu 1997): squares around the centre go to
 /// circles, which keeps neighbours together and their distances within a factor of about 1.4.
-#[inline]
+#[inline(always)]
 pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
     let p = 2.0 * u - Vec2::ONE;
     if p == Vec2::ZERO {
