@@ -4,7 +4,7 @@ use crate::{
     LAMBDA_MAX, LAMBDA_MIN, N,
     spectrum::{SAMPLES, dense_index},
 };
-use tenfold_math::{Vec4, ops};
+use tenfold_math::{Floats, WIDTH, ops, vectorized};
 
 /// Centre of the visible-importance density, nm.
 const CENTRE: f32 = 538.0;
@@ -30,7 +30,7 @@ impl SampledWavelengths {
     /// The wavelengths `lambda` in nm, drawn with the densities `pdf` per nm.
     #[inline]
     pub fn new(lambda: [f32; N], pdf: [f32; N]) -> Self {
-        Self { lambda, pdf, nearest: lambda.map(|l| dense_index(l).unwrap_or(SAMPLES) as u16) }
+        Self { lambda, pdf, nearest: lambda.map(nearest) }
     }
 
     /// Wavelengths in nm.
@@ -56,16 +56,30 @@ impl SampledWavelengths {
     /// `[LAMBDA_MIN, LAMBDA_MAX]` (pbrt 4th ed., section 4.5.4; Radziszewski et al. 2009).
     #[inline]
     pub fn sample_visible(u: f32) -> Self {
-        // The hyperbolic tangent of the scaled distance from the centre, which is uniformly distributed.
-        let tanh = TANH_LOW - TANH_SPAN * rotations(u);
-        Self::new(visible_from_tanh(tanh).to_array(), (DENSITY * (1.0 - tanh * tanh)).to_array())
+        let [mut lambda, mut pdf] = [[0.0; N]; 2];
+        for i in 0..N {
+            (lambda[i], pdf[i]) = visible(rotation(u, i));
+        }
+        Self::new(lambda, pdf)
+    }
+
+    /// [`Self::sample_visible`] of the number in each slot.
+    #[inline]
+    pub fn samples_visible(u: &Floats) -> [Self; WIDTH] {
+        let mut lanes = Lanes::default();
+        draw_visible(u, &mut lanes);
+        std::array::from_fn(|i| Self {
+            lambda: lanes.lambda[i],
+            pdf: lanes.pdf[i],
+            nearest: lanes.nearest[i],
+        })
     }
 
     /// Draws wavelengths uniformly on `[LAMBDA_MIN, LAMBDA_MAX]` from one number `u` in `[0, 1)`, the lanes at equal distances.
     #[inline]
     pub fn sample_uniform(u: f32) -> Self {
         let span = LAMBDA_MAX - LAMBDA_MIN;
-        Self::new((LAMBDA_MIN + span * rotations(u)).to_array(), [1.0 / span; N])
+        Self::new(std::array::from_fn(|i| LAMBDA_MIN + span * rotation(u, i)), [1.0 / span; N])
     }
 
     /// All lanes at one wavelength `lambda` (nm), with density 1 nm⁻¹: what is measured is then the light of one nanometre
@@ -99,24 +113,59 @@ impl SampledWavelengths {
     }
 }
 
-/// `u + i / N` for every lane, wrapped into `[0, 1)`.
-#[inline]
-fn rotations(u: f32) -> Vec4 {
-    let v = u + Vec4::new(0.0, 0.25, 0.5, 0.75);
-    Vec4::select(v.cmpge(Vec4::ONE), v - 1.0, v)
+/// What [`SampledWavelengths`] holds, for the wavelengths in each slot.
+#[derive(Default)]
+#[repr(align(64))]
+struct Lanes {
+    lambda: [[f32; N]; WIDTH],
+    pdf: [[f32; N]; WIDTH],
+    nearest: [[u16; N]; WIDTH],
 }
 
-/// Wavelengths with tanh(STEEPNESS (CENTRE − λ)) = `t`: artanh t is ½ ln((1 + t) / (1 − t)).
-#[inline]
-fn visible_from_tanh(t: Vec4) -> Vec4 {
-    let artanh = ops::ln_lanes((1.0 + t) / (1.0 - t));
+vectorized! {
+    /// Draws wavelengths from the number in each slot.
+    fn draw_visible(u: &Floats, out: &mut Lanes) {
+        let u = u.map(|u| [u; N]);
+        // One loop over all lanes of all slots.
+        let u = u.as_flattened();
+        let Lanes { lambda, pdf, nearest: nearests } = out;
+        let (lambda, pdf, nearests) = (lambda.as_flattened_mut(), pdf.as_flattened_mut(), nearests.as_flattened_mut());
+        for i in 0..N * WIDTH {
+            (lambda[i], pdf[i]) = visible(rotation(u[i], i));
+            nearests[i] = nearest(lambda[i]);
+        }
+    }
+}
+
+/// Where a table of [`SAMPLES`] values, and one for all wavelengths beyond, has that of `lambda`.
+#[inline(always)]
+fn nearest(lambda: f32) -> u16 {
+    dense_index(lambda).unwrap_or(SAMPLES) as u16
+}
+
+/// `u` rotated for the lane `i`, of those of all slots: `u + i / N` modulo 1.
+#[inline(always)]
+fn rotation(u: f32, i: usize) -> f32 {
+    let v = u + (i % N) as u16 as f32 * (1.0 / N as f32);
+    if v >= 1.0 { v - 1.0 } else { v }
+}
+
+/// The wavelength that `u` draws by [`SampledWavelengths::sample_visible`], and its density.
+#[inline(always)]
+fn visible(u: f32) -> (f32, f32) {
+    // The hyperbolic tangent of the scaled distance from the centre, which is uniformly distributed.
+    let tanh = TANH_LOW - TANH_SPAN * u;
+    // artanh t is ½ ln((1 + t) / (1 - t)).
+    let artanh = ops::ln_of_normal((1.0 + tanh) / (1.0 - tanh));
+    let lambda = CENTRE - (0.5 / STEEPNESS) * artanh;
     // The clamp takes off the rounding at both ends, where the density would answer 0.
-    (CENTRE - (0.5 / STEEPNESS) * artanh).max(Vec4::splat(LAMBDA_MIN)).min(Vec4::splat(LAMBDA_MAX))
+    (lambda.clamp(LAMBDA_MIN, LAMBDA_MAX), DENSITY * (1.0 - tanh * tanh))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tenfold_math::ONE_MINUS_EPSILON;
     use tenfold_testkit::chi2::{Options, interval_test};
     use tenfold_testkit::quadrature;
 
@@ -158,6 +207,15 @@ mod tests {
             assert!(!interval_test(LAMBDA_MIN, LAMBDA_MAX, draw, uniform, &options).passed);
             let draw = |u| Some(SampledWavelengths::sample_uniform(u).lambda()[lane]);
             interval_test(LAMBDA_MIN, LAMBDA_MAX, draw, uniform, &options).check("uniform");
+        }
+    }
+
+    #[test]
+    fn slots_draw_what_each_number_draws_alone() {
+        for step in 0..2000 {
+            let u: Floats =
+                std::array::from_fn(|i| ((step * WIDTH + i) as f32 / 32_000.0).min(ONE_MINUS_EPSILON));
+            assert_eq!(SampledWavelengths::samples_visible(&u), u.map(SampledWavelengths::sample_visible));
         }
     }
 

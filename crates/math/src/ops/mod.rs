@@ -9,8 +9,6 @@ mod trigonometry;
 
 pub use trigonometry::sin_cos_of_small;
 
-use glam::Vec4;
-
 /// A float with elementary functions: `f32` and `f64`.
 pub trait Float: Copy {
     #[doc(hidden)]
@@ -121,12 +119,12 @@ pub fn hypot<F: Float>(x: F, y: F) -> F {
     x.apply2(y, libm::hypotf, libm::hypot)
 }
 
-/// Natural logarithms of four positive normal numbers, to about 2 units in the last place; without meaning for all others. It has no
-/// branches, so the lanes of a register take it together.
+/// Natural logarithm of a positive normal number, to about 2 units in the last place; without meaning for all others. It has no
+/// branches, so the lanes of vectors take it together.
 ///
 /// The exponent, and a polynomial for the rest in `[√½, √2)`: that of `logf` of the Cephes library (Moshier 1992).
-#[inline]
-pub fn ln_lanes(x: Vec4) -> Vec4 {
+#[inline(always)]
+pub fn ln_of_normal(x: f32) -> f32 {
     const COEFFICIENTS: [f32; 9] = [
         7.037_683_6e-2,
         -1.151_461e-1,
@@ -138,16 +136,12 @@ pub fn ln_lanes(x: Vec4) -> Vec4 {
         -2.499_999_4e-1,
         3.333_333_1e-1,
     ];
-    let (mut exponent, mut rest) = ([0.0; 4], x.to_array());
-    for (exponent, rest) in exponent.iter_mut().zip(&mut rest) {
-        let bits = rest.to_bits();
-        let e = bits.wrapping_sub(std::f32::consts::FRAC_1_SQRT_2.to_bits()) as i32 >> 23;
-        *exponent = e as f32;
-        *rest = f32::from_bits(bits.wrapping_sub((e << 23) as u32));
-    }
-    let (e, f) = (Vec4::from_array(exponent), Vec4::from_array(rest) - 1.0);
+    let bits = x.to_bits();
+    let exponent = bits.wrapping_sub(std::f32::consts::FRAC_1_SQRT_2.to_bits()) as i32 >> 23;
+    let rest = f32::from_bits(bits.wrapping_sub((exponent << 23) as u32));
+    let (e, f) = (exponent as f32, rest - 1.0);
     let square = f * f;
-    let series = COEFFICIENTS.iter().fold(Vec4::ZERO, |sum, &c| sum * f + c) * f * square;
+    let series = COEFFICIENTS.iter().fold(0.0, |sum, &c| sum * f + c) * f * square;
     // The logarithm of two in two parts, the larger of which makes exact products.
     f + (series - 2.121_944_4e-4 * e - 0.5 * square) + 0.693_359_375 * e
 }
@@ -171,16 +165,16 @@ mod tests {
     }
 
     #[test]
-    fn logarithms_of_lanes_are_exact_to_two_units() {
+    fn logarithms_of_normal_numbers_are_exact_to_two_units() {
         let mut worst = 0f64;
         for bits in (f32::MIN_POSITIVE.to_bits()..f32::MAX.to_bits()).step_by(7001) {
             let x = f32::from_bits(bits);
-            let [got, other, again, _] = ln_lanes(Vec4::new(x, 1.0, x, 2.0)).to_array();
-            assert_eq!((got.to_bits(), other), (again.to_bits(), 0.0));
+            let got = ln_of_normal(x);
             let exact = ln(f64::from(x));
             let unit = f64::from((exact as f32).abs().max(f32::MIN_POSITIVE)) * f64::from(f32::EPSILON);
             worst = worst.max((f64::from(got) - exact).abs() / unit);
         }
         assert!(worst < 2.0, "{worst}");
+        assert_eq!(ln_of_normal(1.0), 0.0);
     }
 }

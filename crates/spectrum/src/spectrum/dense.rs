@@ -9,10 +9,10 @@ use crate::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
 pub(crate) const SAMPLES: usize = (LAMBDA_MAX - LAMBDA_MIN) as usize + 1;
 
 /// Index of the nanometre nearest to `lambda`, where it is in the rendered range.
-#[inline]
+#[inline(always)]
 pub(crate) fn dense_index(lambda: f32) -> Option<usize> {
     let i = lambda + (0.5 - LAMBDA_MIN);
-    (i >= 0.0 && i < SAMPLES as f32).then_some(i as usize)
+    (i >= 0.0 && i < SAMPLES as f32).then_some(i as u16 as usize)
 }
 
 /// Values at every whole nanometre of the rendered range, looked up by rounding the wavelength as
