@@ -50,7 +50,7 @@ impl Slots {
     /// Those for which `is_kept` holds.
     #[inline]
     #[must_use]
-    pub fn keep(self, is_kept: impl Fn(usize) -> bool) -> Self {
+    pub fn keep(self, mut is_kept: impl FnMut(usize) -> bool) -> Self {
         let mut kept = Self::NONE;
         self.filter(|&slot| is_kept(slot)).for_each(|slot| kept.insert(slot));
         kept

@@ -16,6 +16,7 @@ mod named;
 mod sampled;
 mod sigmoid;
 mod spd;
+mod spectra;
 mod spectrum;
 mod upsample;
 mod wavelengths;
@@ -27,6 +28,7 @@ pub use named::{named, named_names};
 pub use sampled::SampledSpectrum;
 pub use sigmoid::SigmoidPolynomial;
 pub use spd::{SpdError, parse_spd};
+pub use spectra::Spectra;
 pub use spectrum::{
     Blackbody, DenselySampled, PiecewiseError, PiecewiseLinear, RgbAlbedo, RgbIlluminant, RgbUnbounded,
     Spectrum,

@@ -1,4 +1,4 @@
-use std::f32::consts::FRAC_1_PI;
+use std::{f32::consts::FRAC_1_PI, ops::Mul};
 
 use tenfold_math::{Vec2, Vec3};
 use tenfold_sampling::warp;
@@ -28,7 +28,7 @@ impl Diffuse {
 
     /// The BSDF of an albedo.
     #[inline]
-    pub(crate) fn value(reflectance: SampledSpectrum) -> SampledSpectrum {
+    pub(crate) fn value<T: Mul<f32, Output = T>>(reflectance: T) -> T {
         reflectance * FRAC_1_PI
     }
 

@@ -1,30 +1,21 @@
 //! Even reflectors side by side: what [`Bsdf`](crate::bxdf::Bsdf) does for a [`Diffuse`](crate::bxdf::Diffuse) surface, to the bit, in vector
 //! instructions.
 
-use super::wave::EvenReflectors;
+use super::{wave::EvenReflectors, weights::Scattering};
 use crate::bxdf::{Diffuse, HORIZON};
 use tenfold_geometry::ReferencePoints;
-use tenfold_math::{Floats, Frame, Rays, Vec2s, Vec3s, WIDTH, offset_ray_origin, vectorized};
+use tenfold_math::{Frame, Rays, Vec2s, Vec3s, WIDTH, offset_ray_origin, vectorized};
 use tenfold_sampling::warp;
-
-/// Pairs of directions at even reflectors.
-#[derive(Debug, Default)]
-pub(super) struct EvenScattering {
-    /// Density of the second direction from the first, in solid angle: 0 where nothing is reflected.
-    pub(super) pdf: Floats,
-    /// |cos| of the second direction.
-    pub(super) cos: Floats,
-}
+use tenfold_spectrum::N;
 
 vectorized! {
     /// Scattering between the directions `wo` and `wi`.
-    pub(super) fn evaluate(surfaces: &EvenReflectors, wo: &Vec3s, wi: &Vec3s, out: &mut EvenScattering) {
+    pub(super) fn evaluate(surfaces: &EvenReflectors, wo: &Vec3s, wi: &Vec3s, out: &mut Scattering) {
         for i in 0..WIDTH {
             let n = surfaces.n.get(i);
             let (o, w) = (wo.get(i).dot(n), wi.get(i).dot(n));
             let reflects = (o.abs() >= HORIZON) & (w.abs() >= HORIZON) & ((o > 0.0) == (w > 0.0));
-            out.pdf[i] = if reflects { Diffuse::density(w) } else { 0.0 };
-            out.cos[i] = w.abs();
+            set(surfaces, i, reflects, w, w.abs(), out);
         }
     }
 }
@@ -37,7 +28,7 @@ vectorized! {
         from: &ReferencePoints,
         u: &Vec2s,
         rays: &mut Rays,
-        out: &mut EvenScattering,
+        out: &mut Scattering,
     ) {
         for i in 0..WIDTH {
             let frame = Frame::from_z_and_tangent(surfaces.n.get(i), surfaces.tangent.get(i));
@@ -46,11 +37,21 @@ vectorized! {
             local.z = local.z.copysign(side);
             let wi = frame.to_world(local);
             let reflects = (side.abs() >= HORIZON) & (local.z.abs() >= HORIZON);
-            out.pdf[i] = if reflects { Diffuse::density(local.z) } else { 0.0 };
-            out.cos[i] = wi.dot(frame.z).abs();
+            set(surfaces, i, reflects, local.z, wi.dot(frame.z).abs(), out);
             rays.origin.set(i, offset_ray_origin(from.p.get(i), from.p_error.get(i), from.n.get(i), wi));
             rays.direction.set(i, wi);
             rays.time[i] = from.time[i];
         }
     }
+}
+
+/// Sets value and density of a direction with the cosine `z`, which is `cos` in the world.
+#[inline(always)]
+fn set(surfaces: &EvenReflectors, slot: usize, reflects: bool, z: f32, cos: f32, out: &mut Scattering) {
+    let pdf = if reflects { Diffuse::density(z) } else { 0.0 };
+    let value = |reflectance: f32| if reflects { Diffuse::value(reflectance) } else { 0.0 };
+    out.f.set_array(slot, surfaces.reflectance.array(slot).map(value));
+    out.pdf.set_array(slot, [pdf; N]);
+    out.hero_pdf[slot] = pdf;
+    out.cos[slot] = cos;
 }

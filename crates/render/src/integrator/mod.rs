@@ -11,6 +11,7 @@ mod spectral;
 mod strategies;
 mod tracer;
 mod wave;
+mod weights;
 
 pub use combine::CombineStrategy;
 pub use spectral::DispersionRule;

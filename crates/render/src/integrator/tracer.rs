@@ -1,21 +1,21 @@
 use super::{
-    Strategies,
-    even::{self, EvenScattering},
-    path::{Arrival, Path, Waiting},
+    Strategies, even,
+    path::{Path, Waiting},
     spectral::{DispersionRule, Lanes},
     wave::{Vertices, Wave},
+    weights::{Scattering, Weights, advance, weigh_sampled},
 };
 use crate::{
-    bxdf::{Bsdf, BsdfSample, BsdfValue, Diffuse, Lobe, ScatterStrategy},
+    bxdf::{Bsdf, BsdfSample, BsdfValue, Lobe, ScatterStrategy},
     light::{LightSamples, ShadowRay},
     material::Waves,
     scene::{Scene, Surface},
     texture::TextureContext,
 };
 use tenfold_geometry::{Candidate, FlatSurfaces, Hit, PrimitiveId, ReferencePoint, SurfaceInteraction};
-use tenfold_math::{Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
+use tenfold_math::{Ray, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
-use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
+use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths, Spectra};
 
 /// Passing through this many interfaces ends a path: a bound for scenes with interfaces without end.
 const MOST_PASSES: u32 = 1024;
@@ -81,7 +81,8 @@ pub struct Workspace<'a> {
     wave: Wave<'a>,
     surfaces: FlatSurfaces,
     lights: LightSamples,
-    scattering: EvenScattering,
+    scattering: Scattering,
+    arriving: Spectra,
     /// Paths that wait for their turn. Every split leaves each lane on one path only: a sample has never more than lanes.
     pending: Vec<Waiting>,
     /// Rays traced so far.
@@ -106,8 +107,7 @@ impl<'a> PathTracer<'a> {
     /// are with it.
     pub fn trace(&self, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
         for (slot, sample) in samples.iter().enumerate() {
-            workspace.wave.paths[slot] = Path::from_camera(slot);
-            workspace.wave.rays.set(slot, sample.ray);
+            workspace.wave.start(slot, sample.ray);
         }
         let mut live = Slots::first(samples.len());
         loop {
@@ -209,16 +209,15 @@ impl<'a> PathTracer<'a> {
     ) {
         let scene = self.scene;
         let mut passes = 0;
-        let path = &mut wave.paths[slot];
         let mut ray = wave.rays.get(slot);
-        let last = &wave.from;
         loop {
             let Some(found) = &hit else {
-                self.add_escaped(path, &ray, || last.get(slot), sample);
+                self.add_escaped(wave, slot, &ray, sample);
                 return;
             };
             let surface = scene.world.interaction(&ray, found);
-            self.add_emitted(path, &ray, || last.get(slot), &surface, sample);
+            self.add_emitted(wave, slot, &ray, &surface, sample);
+            let path = &mut wave.paths[slot];
             let at_end = path.bounce >= scene.max_depth;
             let material = self.look(surface.primitive).material;
             // A path that has met all the surfaces it may still passes those that are none.
@@ -247,7 +246,7 @@ impl<'a> PathTracer<'a> {
                 }
                 if !scene.materials.is_interface(material) {
                     // Shadow rays stop at what is an interface by chance alone: no light sample could have come this way.
-                    path.arrival = Arrival::Specular;
+                    path.specular = true;
                 }
                 ray = surface.spawn_ray(ray.direction);
                 hit = self.intersect(&ray, path, sample, rays);
@@ -257,10 +256,13 @@ impl<'a> PathTracer<'a> {
                 return;
             }
             if self.rule == DispersionRule::Terminate && path.lanes.count() > 1 && bsdf.is_dispersive() {
-                terminate_secondary(path);
+                let weights = terminate_secondary(path, &wave.weights.get(slot));
+                wave.weights.set(slot, &weights, &path.lanes);
             }
             if path.lanes.count() > 1 && bsdf.parts_wavelengths() {
-                path.settle();
+                let mut weights = wave.weights.get(slot);
+                weights.settle(&path.lanes);
+                wave.weights.set(slot, &weights, &path.lanes);
                 vertices.parting.insert(slot);
             }
             if bsdf.lobes().has_density() {
@@ -333,21 +335,15 @@ impl<'a> PathTracer<'a> {
 
     /// Light that arrives from beyond the scene.
     #[inline]
-    fn add_escaped(
-        &self,
-        path: &Path,
-        ray: &Ray,
-        last: impl Fn() -> ReferencePoint,
-        sample: &mut Sample<'_>,
-    ) {
+    fn add_escaped(&self, wave: &Wave<'_>, slot: usize, ray: &Ray, sample: &mut Sample<'_>) {
         let lights = &self.scene.lights;
         for &id in lights.infinite() {
             let emitted = lights.escaped(id, ray.direction, &sample.wavelengths);
             if emitted.is_black() {
                 continue;
             }
-            let pdf = || lights.pdf_escaped(self.strategies.light, &last(), id, ray.direction);
-            sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
+            let pdf = || lights.pdf_escaped(self.strategies.light, &wave.from.get(slot), id, ray.direction);
+            sample.radiance += wave.carried(slot, self.strategies.combine, emitted, pdf);
         }
     }
 
@@ -355,9 +351,9 @@ impl<'a> PathTracer<'a> {
     #[inline]
     fn add_emitted(
         &self,
-        path: &Path,
+        wave: &Wave<'_>,
+        slot: usize,
         ray: &Ray,
-        last: impl Fn() -> ReferencePoint,
         surface: &SurfaceInteraction,
         sample: &mut Sample<'_>,
     ) {
@@ -367,14 +363,14 @@ impl<'a> PathTracer<'a> {
         if emitted.is_black() {
             return;
         }
-        let pdf = || lights.pdf_hit(self.strategies.light, &last(), id, surface, ray.direction);
-        sample.radiance += path.carried(self.strategies.combine, emitted, pdf);
+        let pdf = || lights.pdf_hit(self.strategies.light, &wave.from.get(slot), id, surface, ray.direction);
+        sample.radiance += wave.carried(slot, self.strategies.combine, emitted, pdf);
     }
 
     /// Light from points sampled on lights.
     fn add_direct(&self, vertices: &Vertices, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
         let Strategies { light: strategy, combine, .. } = self.strategies;
-        let Workspace { wave, lights: light, scattering, rays, .. } = workspace;
+        let Workspace { wave, lights: light, scattering, arriving, rays, .. } = workspace;
         let scene_lights = &self.scene.lights;
         let count = scene_lights.sampled(strategy);
         let seeing = vertices.even.or(vertices.glossy);
@@ -396,33 +392,26 @@ impl<'a> PathTracer<'a> {
             return;
         }
         even::evaluate(&wave.even, &wave.wo, &light.wi, scattering);
+        let mut parts = [false; WIDTH];
+        for slot in lit.without(vertices.even) {
+            let Some(bsdf) = &wave.bsdfs[slot] else { continue };
+            let wi = light.wi.get(slot);
+            let BsdfValue { f, pdf } = bsdf.eval_and_pdf(wave.wo.get(slot), wi);
+            scattering.set(slot, f, pdf, wave.paths[slot].lanes.hero(), wi.dot(bsdf.frame().z).abs());
+            parts[slot] = vertices.parting.contains(slot);
+        }
+        weigh_sampled(combine, &wave.weights, scattering, light, &parts, arriving);
         for slot in lit {
-            let path = &wave.paths[slot];
-            let (f, scatter_pdf, cos) = if vertices.even.contains(slot) {
-                let pdf = scattering.pdf[slot];
-                if pdf == 0.0 {
-                    continue;
-                }
-                let f = Diffuse::value(wave.even.reflectance[slot]);
-                (f, SampledSpectrum::splat(pdf), scattering.cos[slot])
-            } else {
-                let Some(bsdf) = &wave.bsdfs[slot] else { continue };
-                let wi = light.wi.get(slot);
-                let BsdfValue { f, pdf } = bsdf.eval_and_pdf(wave.wo.get(slot), wi);
-                (f, pdf, wi.dot(bsdf.frame().z).abs())
-            };
-            let contribution = path.beta * f * light.radiance[slot] * cos;
-            if contribution.is_black() {
+            let arriving = arriving.get(slot);
+            if arriving.is_black() {
                 continue;
             }
-            let (delta, parts) = (light.delta.contains(slot), vertices.parting.contains(slot));
-            let density = path.density_of_sampled(combine, light.pdf[slot], delta, scatter_pdf, parts);
-            let Some(density) = density else { continue };
             rays.shadow += 1;
+            let path = &wave.paths[slot];
             let sample = &mut samples[path.sample];
             let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
             if !self.is_shadowed(&light.shadow_ray(slot), chance) {
-                sample.radiance += contribution.safe_div(density);
+                sample.radiance += arriving;
             }
         }
     }
@@ -430,36 +419,21 @@ impl<'a> PathTracer<'a> {
     /// Sends the paths on; the slots of those that go on.
     fn scatter(&self, vertices: &Vertices, samples: &[Sample<'_>], workspace: &mut Workspace<'a>) -> Slots {
         let Workspace { wave, scattering, pending, .. } = workspace;
-        let mut live = Slots::NONE;
         if !vertices.even.is_empty() {
             let mut u = Vec2s::ZERO;
             for slot in vertices.even {
                 let path = &wave.paths[slot];
                 u.set(slot, samples[path.sample].sampler.get_2d(Dimension::scatter_direction(path.bounce)));
             }
-            let mut rays = Rays::default();
-            even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut rays, scattering);
-            for slot in vertices.even {
-                let (pdf, cos) = (scattering.pdf[slot], scattering.cos[slot]);
-                if pdf == 0.0 {
-                    continue;
-                }
-                let path = &mut wave.paths[slot];
-                let f = Diffuse::value(wave.even.reflectance[slot]);
-                let is_carried = path.advance(f, cos, SampledSpectrum::splat(pdf), false);
-                path.bounce += 1;
-                if is_carried && survives(path, &samples[path.sample]) {
-                    wave.rays.set(slot, rays.get(slot));
-                    live.insert(slot);
-                }
-            }
+            even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut wave.rays, scattering);
         }
+        let mut scattered = vertices.even.keep(|slot| scattering.hero_pdf[slot] > 0.0);
         for slot in vertices.other {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };
             let path = &mut wave.paths[slot];
             let (wo, from, sample) = (wave.wo.get(slot), wave.from.get(slot), &samples[path.sample]);
             if vertices.parting.contains(slot) {
-                self.part(path, wo, &from, bsdf, sample, pending);
+                self.part(path, &wave.weights.get(slot), wo, &from, bsdf, sample, pending);
                 continue;
             }
             let u_lobe = if bsdf.chooses_lobe() {
@@ -468,14 +442,25 @@ impl<'a> PathTracer<'a> {
                 0.0
             };
             let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
-            let scattered = bsdf.sample(wo, u_lobe, u, path.lanes.hero());
-            let Some(scattered) = &scattered else { continue };
-            if advance(path, bsdf, scattered) && survives(path, sample) {
-                wave.rays.set(slot, from.spawn_ray(scattered.wi));
-                live.insert(slot);
-            }
+            let Some(s) = &bsdf.sample(wo, u_lobe, u, path.lanes.hero()) else { continue };
+            scattering.set(slot, s.f, s.pdf, path.lanes.hero(), s.wi.dot(bsdf.frame().z).abs());
+            wave.weights.eta_scale[slot] *= s.eta * s.eta;
+            path.specular = s.lobe.is_specular();
+            wave.rays.set(slot, from.spawn_ray(s.wi));
+            scattered.insert(slot);
         }
-        live
+        let mut carried = [0.0; WIDTH];
+        advance(&mut wave.weights, scattering, &mut carried);
+        vertices.even.for_each(|slot| wave.paths[slot].specular = false);
+        scattered.keep(|slot| {
+            let path = &mut wave.paths[slot];
+            path.bounce += 1;
+            let survival = survival(path, carried[slot], &samples[path.sample]);
+            if survival < 1.0 {
+                wave.weights.strengthen(slot, survival);
+            }
+            survival > 0.0
+        })
     }
 
     /// Sends every lane of a settled path its own way. Lanes that are reflected stay together: reflection does not
@@ -483,14 +468,25 @@ impl<'a> PathTracer<'a> {
     fn part(
         &self,
         path: &Path,
+        weights: &Weights,
         wo: Vec3,
         from: &ReferencePoint,
         bsdf: &Bsdf<'_>,
         sample: &Sample<'_>,
         pending: &mut Vec<Waiting>,
     ) {
-        let mut push =
-            |path: Path, wi: Vec3| pending.push(Waiting { path, ray: from.spawn_ray(wi), from: *from });
+        let mut push = |lanes: Lanes, mut weights: Weights, s: &BsdfSample| {
+            let specular = s.lobe.is_specular();
+            let path = Path { lanes, bounce: path.bounce + 1, specular, ..*path };
+            weights.eta_scale *= s.eta * s.eta;
+            let survival = survival(&path, weights.carried(&lanes), sample);
+            if survival > 0.0 {
+                if survival < 1.0 {
+                    weights.beta /= survival;
+                }
+                pending.push(Waiting { path, weights, ray: from.spawn_ray(s.wi), from: *from });
+            }
+        };
         // All lanes use the same random numbers: as dispersion tends to zero, so do their differences.
         let u_lobe = sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce));
         let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
@@ -506,22 +502,18 @@ impl<'a> PathTracer<'a> {
                 joint.pdf.set_lane(lane, s.pdf.lane(lane));
                 continue;
             }
-            let mut child = path.with_lanes(Lanes::one(lane));
-            if advance(&mut child, bsdf, &s) && survives(&mut child, sample) {
-                push(child, s.wi);
-            }
+            let lanes = Lanes::one(lane);
+            let mut child = weights.with_lanes(&lanes);
+            child.advance(s.f, s.pdf, s.pdf.lane(lane), s.wi.dot(bsdf.frame().z).abs());
+            push(lanes, child, &s);
         }
         if let Some(s) = reflection {
             let u_hero = sample.sampler.get_1d(Dimension::hero(path.bounce));
-            let mut child = path.with_lanes(Lanes::subset(reflected, u_hero));
+            let lanes = Lanes::subset(reflected, u_hero);
+            let mut child = weights.with_lanes(&lanes);
             // Each lane was reflected by its own choice: its own probability divides it, and nothing is left to weigh.
-            let probability = s.pdf;
-            child.beta = (child.beta * s.f * s.wi.dot(bsdf.frame().z).abs()).safe_div(probability);
-            child.arrival = Arrival::Specular;
-            child.leave(s.eta);
-            if survives(&mut child, sample) {
-                push(child, s.wi);
-            }
+            child.beta = (child.beta * s.f * s.wi.dot(bsdf.frame().z).abs()).safe_div(s.pdf);
+            push(lanes, child, &s);
         }
     }
 
@@ -575,19 +567,13 @@ impl Chance<'_> {
     }
 }
 
-/// Goes on with the hero alone, in place of all lanes.
-fn terminate_secondary(path: &mut Path) {
+/// Goes on with the hero alone, in place of all lanes: with these weights.
+fn terminate_secondary(path: &mut Path, weights: &Weights) -> Weights {
     let count = path.lanes.count() as f32;
-    *path = path.with_lanes(Lanes::one(path.lanes.hero()));
-    path.beta *= count;
-}
-
-/// Weighs a scattered direction in and moves on; false where nothing is left to carry.
-#[inline]
-fn advance(path: &mut Path, bsdf: &Bsdf<'_>, s: &BsdfSample) -> bool {
-    let is_carried = path.advance(s.f, s.wi.dot(bsdf.frame().z).abs(), s.pdf, s.lobe.is_specular());
-    path.leave(s.eta);
-    is_carried
+    path.lanes = Lanes::one(path.lanes.hero());
+    let mut weights = weights.with_lanes(&path.lanes);
+    weights.beta *= count;
+    weights
 }
 
 /// What paths must carry to go on in any case.
@@ -597,19 +583,16 @@ const SAFE: f32 = 0.25;
 ///
 /// Most of the cost of a path is in its first vertices, and most of the noise of roulette comes from ending paths that carry much:
 /// chances in proportion to what is carried, up to 1 at a quarter, were the best of those tried.
+///
+/// The chance with which a path that carries `carried` at most goes on: 1 of those that go on in any case, 0 of those that do not.
 #[inline]
-fn survives(path: &mut Path, sample: &Sample<'_>) -> bool {
-    if path.bounce < 2 {
-        return true;
+fn survival(path: &Path, carried: f32, sample: &Sample<'_>) -> f32 {
+    if carried == 0.0 {
+        return 0.0;
     }
-    let carried = path.beta.max_component() * path.eta_scale / path.lanes.mean(path.ratio);
-    if carried >= SAFE || sample.sampler.held(Variable::Roulette).is_some() {
-        return true;
+    if path.bounce < 2 || carried >= SAFE || sample.sampler.held(Variable::Roulette).is_some() {
+        return 1.0;
     }
     let survival = (carried / SAFE).max(0.05);
-    if sample.sampler.get_1d(Dimension::roulette(path.bounce)) >= survival {
-        return false;
-    }
-    path.beta /= survival;
-    true
+    if sample.sampler.get_1d(Dimension::roulette(path.bounce)) >= survival { 0.0 } else { survival }
 }

@@ -1,14 +1,20 @@
-use super::path::{Path, Waiting};
+use super::{
+    CombineStrategy,
+    path::{Path, Waiting},
+    spectral::Lanes,
+    weights::{WaveWeights, Weights},
+};
 use crate::bxdf::Bsdf;
 use tenfold_geometry::{FlatSurfaces, ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
-use tenfold_math::{Rays, Slots, Vec3s, WIDTH};
-use tenfold_spectrum::SampledSpectrum;
+use tenfold_math::{Ray, Rays, Slots, Vec3s, WIDTH};
+use tenfold_spectrum::{SampledSpectrum, Spectra};
 
 /// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
 /// instructions.
 #[derive(Debug)]
 pub(super) struct Wave<'a> {
     pub(super) paths: [Path; WIDTH],
+    pub(super) weights: WaveWeights,
     /// Where the paths go next.
     pub(super) rays: Rays,
     /// Their last vertices.
@@ -28,7 +34,7 @@ pub(super) struct EvenReflectors {
     pub(super) n: Vec3s,
     /// Directions to which the first axes of the shading frames are nearest.
     pub(super) tangent: Vec3s,
-    pub(super) reflectance: [SampledSpectrum; WIDTH],
+    pub(super) reflectance: Spectra,
 }
 
 /// The slots whose paths have come to a vertex from which they go on, by what they met.
@@ -48,14 +54,11 @@ impl Default for Wave<'_> {
     fn default() -> Self {
         Self {
             paths: [Path::from_camera(0); WIDTH],
+            weights: WaveWeights::default(),
             rays: Rays::default(),
             from: ReferencePoints::default(),
             wo: Vec3s::ZERO,
-            even: EvenReflectors {
-                n: Vec3s::ZERO,
-                tangent: Vec3s::ZERO,
-                reflectance: [SampledSpectrum::ZERO; WIDTH],
-            },
+            even: EvenReflectors { n: Vec3s::ZERO, tangent: Vec3s::ZERO, reflectance: Spectra::ZERO },
             bsdfs: [const { None }; WIDTH],
         }
     }
@@ -66,17 +69,38 @@ impl EvenReflectors {
     pub(super) fn set(&mut self, slot: usize, shading: &Shading, reflectance: SampledSpectrum) {
         self.n.set(slot, shading.n);
         self.tangent.set(slot, shading.dpdu);
-        self.reflectance[slot] = reflectance;
+        self.reflectance.set(slot, reflectance);
     }
 }
 
 impl Wave<'_> {
+    /// Puts the path of a sample that starts at the camera into a slot.
+    #[inline]
+    pub(super) fn start(&mut self, slot: usize, ray: Ray) {
+        self.paths[slot] = Path::from_camera(slot);
+        self.weights.set(slot, &Weights::ONE, &Lanes::ALL);
+        self.rays.set(slot, ray);
+    }
+
     /// Puts a path that has waited into the first slot.
     pub(super) fn resume(&mut self, waiting: Waiting) -> Slots {
         self.paths[0] = waiting.path;
+        self.weights.set(0, &waiting.weights, &waiting.path.lanes);
         self.rays.set(0, waiting.ray);
         self.from.set(0, waiting.from);
         Slots::first(1)
+    }
+
+    /// [`Path::carried`] of the path in a slot.
+    #[inline]
+    pub(super) fn carried(
+        &self,
+        slot: usize,
+        combine: CombineStrategy,
+        emitted: SampledSpectrum,
+        light_pdf: impl FnOnce() -> f32,
+    ) -> SampledSpectrum {
+        self.paths[slot].carried(&self.weights.get(slot), combine, emitted, light_pdf)
     }
 
     /// Puts the path in a slot at a vertex on a flat even reflector.
@@ -89,7 +113,7 @@ impl Wave<'_> {
         self.wo.set(slot, wo);
         self.even.n.set(slot, n);
         self.even.tangent.set(slot, surfaces.dpdu.get(slot));
-        self.even.reflectance[slot] = reflectance;
+        self.even.reflectance.set(slot, reflectance);
     }
 
     /// Puts the path in a slot at a vertex.

@@ -4,7 +4,7 @@ use super::lights::{Choice, Lights};
 use super::{Light, LightSample, LightStrategy, ShadowRay};
 use tenfold_geometry::{ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
 use tenfold_math::{Floats, Id, Rays, Slots, Vec2s, Vec3s, WIDTH, vectorized};
-use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
+use tenfold_spectrum::{SampledWavelengths, Spectra};
 
 /// With fewer points that see the same light, each is served by itself.
 const WORTHWHILE: usize = 3;
@@ -13,13 +13,13 @@ const WORTHWHILE: usize = 3;
 #[derive(Clone, Debug, Default)]
 pub struct LightSamples {
     /// See [`LightSample::radiance`].
-    pub radiance: [SampledSpectrum; WIDTH],
+    pub radiance: Spectra,
     /// See [`LightSample::wi`].
     pub wi: Vec3s,
     /// See [`LightSample::pdf`].
     pub pdf: Floats,
-    /// Slots of lights that no other way of sampling finds.
-    pub delta: Slots,
+    /// See [`LightSample::delta`].
+    pub delta: [bool; WIDTH],
     /// See [`LightSample::shadow_ray`].
     pub shadow: Rays,
     /// See [`ShadowRay::t_max`].
@@ -37,12 +37,10 @@ impl LightSamples {
 
     #[inline]
     fn set(&mut self, slot: usize, sample: &LightSample, shadow: ShadowRay) {
-        self.radiance[slot] = sample.radiance;
+        self.radiance.set(slot, sample.radiance);
         self.wi.set(slot, sample.wi);
         self.pdf[slot] = sample.pdf;
-        if sample.delta {
-            self.delta.insert(slot);
-        }
+        self.delta[slot] = sample.delta;
         self.shadow.set(slot, shadow.ray);
         self.t_max[slot] = shadow.t_max;
     }
@@ -61,7 +59,6 @@ impl Lights {
         wavelengths: impl Fn(usize) -> &'w SampledWavelengths,
         out: &mut LightSamples,
     ) -> Slots {
-        out.delta = Slots::NONE;
         let mut choices = [const { Choice { light: 0, pmf: 0.0 } }; WIDTH];
         let mut left = Slots::NONE;
         for slot in slots {
@@ -84,12 +81,11 @@ impl Lights {
                 aim(from, area.is_two_sided(), out, &mut seen);
                 for slot in same.keep(|slot| seen[slot]) {
                     out.pdf[slot] = out.points.pdf[slot] * choices[slot].pmf;
-                    out.radiance[slot] = area.even_radiance(wavelengths(slot));
-                    if out.pdf[slot] > 0.0 && !out.radiance[slot].is_black() {
+                    out.delta[slot] = area.is_invisible();
+                    let radiance = area.even_radiance(wavelengths(slot));
+                    out.radiance.set(slot, radiance);
+                    if out.pdf[slot] > 0.0 && !radiance.is_black() {
                         lit.insert(slot);
-                        if area.is_invisible() {
-                            out.delta.insert(slot);
-                        }
                     }
                 }
                 continue;
