@@ -20,6 +20,7 @@ mod shape;
 mod subdivision;
 mod world;
 
+pub use bvh::RayCourses;
 pub use cone::NormalCone;
 pub use hit::{Candidate, Hit, InstanceId, PrimitiveId};
 pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};

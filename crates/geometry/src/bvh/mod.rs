@@ -4,6 +4,7 @@
 //! the business of the [`Visitor`].
 
 mod build;
+mod course;
 mod layout;
 mod memory;
 mod node;
@@ -13,6 +14,8 @@ mod traverse;
 mod triangles;
 
 pub(crate) use build::{Reference, Target, padded};
+pub(crate) use course::Course;
+pub use course::RayCourses;
 pub(crate) use memory::with_capacity;
 pub(crate) use node::LeafPrimitive;
 pub(crate) use traverse::{LONGER, Level, Visitor};

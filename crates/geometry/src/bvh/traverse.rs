@@ -2,13 +2,14 @@
 
 use super::{
     Bvh,
+    course::Course,
     node::{Child, Kind, LANES, LeafPrimitive, Node, TriangleBlock, WIDTH},
     simd::{Portable, Simd, Vector},
     stack::Stack,
     triangles::Shear,
 };
-use crate::{ShapeHit, shape::RayShear};
-use tenfold_math::{Ray, gamma};
+use crate::ShapeHit;
+use tenfold_math::gamma;
 
 /// Which instructions to use. The results are the same.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -74,12 +75,9 @@ pub(crate) const LONGER: f32 = 1.0 + 2.0 * gamma(8);
 
 impl<V: Vector> Slabs<V> {
     #[inline(always)]
-    fn new(ray: &Ray) -> Self {
-        let d = ray.direction;
-        // A ray along a slab gets a tiny slope instead of an infinite inverse, whose product with 0 would be NaN.
-        let tiny = 1e-18 * d.abs().max_element();
-        let inverse = |d: f32| 1.0 / if d.abs() < tiny { tiny.copysign(d) } else { d };
-        let [x, y, z] = [inverse(d.x), inverse(d.y), inverse(d.z)];
+    fn new(course: &impl Course) -> Self {
+        let ray = course.ray();
+        let (d, [x, y, z]) = (ray.direction, course.inverse().to_array());
         let near = |axis: usize, d: f32| 2 * axis + (d.to_bits() >> 31) as usize;
         let near = [near(0, d.x), near(1, d.y), near(2, d.z)];
         Self {
@@ -112,7 +110,7 @@ impl Bvh {
     /// Follows `ray` through the hierarchy, nearest boxes first, until the visitor says that it is over. Returns whether
     /// it did.
     #[inline]
-    pub(crate) fn traverse<W: Visitor>(&self, level: Level, ray: &Ray, visitor: &mut W) -> bool {
+    pub(crate) fn traverse<W: Visitor>(&self, level: Level, ray: &impl Course, visitor: &mut W) -> bool {
         match level {
             Level::Portable => self.traverse_with::<Portable, W>(ray, visitor),
             // SAFETY: the token proves that the machine has AVX2.
@@ -123,12 +121,12 @@ impl Bvh {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn traverse_avx2<W: Visitor>(&self, ray: &Ray, visitor: &mut W) -> bool {
+    fn traverse_avx2<W: Visitor>(&self, ray: &impl Course, visitor: &mut W) -> bool {
         self.traverse_with::<super::simd::Avx2, W>(ray, visitor)
     }
 
     #[inline(always)]
-    fn traverse_with<S: Simd, W: Visitor>(&self, ray: &Ray, visitor: &mut W) -> bool {
+    fn traverse_with<S: Simd, W: Visitor>(&self, ray: &impl Course, visitor: &mut W) -> bool {
         let Some(root) = self.nodes.first() else { return false };
         let slabs = Slabs::<S::F8>::new(ray);
         let (mut mask, mut near) = slabs.intersect(root, visitor.t_max());
@@ -136,7 +134,7 @@ impl Bvh {
         if mask == 0 {
             return false;
         }
-        let shear = Shear::<S::F8>::new(RayShear::new(ray));
+        let shear = Shear::<S::F8>::new(ray.shear());
         let mut stack = Stack::new();
         let pop = |stack: &mut Stack, visitor: &W| match W::ANY {
             true => stack.pop_any(),

@@ -16,7 +16,7 @@ pub use quadric::ShapeError;
 pub use rectangle::Rectangle;
 pub use sphere::{Sphere, SphereParams};
 pub use triangle::Triangle;
-pub(crate) use triangle::{FlatTriangle, RayShear};
+pub(crate) use triangle::{FlatTriangle, RayShear, fastest_axis};
 
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,

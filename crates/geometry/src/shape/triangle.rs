@@ -313,7 +313,7 @@ fn mix<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>(b: [f32; 3
 
 /// A ray turned into the space where it runs along z through the origin: what the watertight test of Woop, Benthin
 /// and Wald (2013) wants.
-#[derive(Copy, Clone, Debug)]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct RayShear {
     pub(crate) origin: Vec3,
     /// The axes that become x, y and z; z is the one along which the ray runs fastest.
@@ -322,16 +322,40 @@ pub(crate) struct RayShear {
     pub(crate) shear: Vec3,
 }
 
+/// The axis along which a direction is fastest. Without branches: for rays in all directions they would go wrong as often as not.
+#[inline(always)]
+pub(crate) fn fastest_axis(d: Vec3) -> u32 {
+    let d = d.abs();
+    u32::from(!((d.x > d.y) & (d.x > d.z))) * (2 - u32::from(d.y > d.z))
+}
+
 impl RayShear {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        let d = ray.direction.abs();
-        // Without branches: for rays in all directions they would go wrong as often as not.
-        let kz = usize::from(!((d.x > d.y) & (d.x > d.z))) * (2 - usize::from(d.y > d.z));
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]][kz & 3];
-        let d = ray.direction.to_array();
-        let [x, y, z] = [d[axes[0]], d[axes[1]], d[axes[2]]];
-        Self { origin: ray.origin, axes, shear: Vec3::new(-x / z, -y / z, 1.0 / z) }
+        let axis = fastest_axis(ray.direction);
+        Self::known(ray.origin, axis as usize, Self::along(ray.direction, axis))
+    }
+
+    /// The ray from `origin` that runs fastest along `axis`, where its shear is known.
+    #[inline(always)]
+    pub(crate) fn known(origin: Vec3, axis: usize, shear: Vec3) -> Self {
+        Self { origin, axes: [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]][axis & 3], shear }
+    }
+
+    /// The shear of rays in the direction `d`, which is fastest along `axis`.
+    #[inline(always)]
+    pub(crate) fn along(d: Vec3, axis: u32) -> Vec3 {
+        let by_axis = |x, y, z| {
+            if axis == 0 {
+                x
+            } else if axis == 1 {
+                y
+            } else {
+                z
+            }
+        };
+        let (x, y, z) = (by_axis(d.y, d.z, d.x), by_axis(d.z, d.x, d.y), by_axis(d.x, d.y, d.z));
+        Vec3::new(-x / z, -y / z, 1.0 / z)
     }
 
     /// The origin by its new axes.

@@ -5,13 +5,14 @@ mod hierarchies;
 mod search;
 
 use crate::{
-    Candidate, Hit, InstanceId, Primitive, PrimitiveId, Shape, ShapeHit, SurfaceInteraction, bvh::Level,
+    Candidate, Hit, InstanceId, Primitive, PrimitiveId, Shape, ShapeHit, SurfaceInteraction,
+    bvh::{Course, Level, RayCourses},
     interaction::toward_origin,
 };
 pub use flat::FlatSurfaces;
 use hierarchies::Hierarchies;
 use search::{Search, State};
-use tenfold_math::{Bounds3, Id, Motion, Ray, Transform, Vec2, Vec3};
+use tenfold_math::{Bounds3, Id, Motion, Ray, Rays, Transform, Vec2, Vec3};
 
 /// A shape in a world: what [`PrimitiveId::geometry`] names.
 #[derive(Clone, Debug)]
@@ -137,18 +138,45 @@ impl World {
         self.query::<false>(ray, t_max, filter)
     }
 
+    /// [`World::intersect`] for the ray in `slot` of `rays`, of which `courses` has been prepared.
+    #[inline]
+    pub fn intersect_slot(
+        &self,
+        slot: usize,
+        rays: &Rays,
+        courses: &RayCourses,
+        t_max: f32,
+        filter: impl Fn(&Candidate<'_>) -> bool,
+    ) -> Option<Hit> {
+        self.query::<false>(&courses.of(slot, rays.get(slot)), t_max, filter)
+    }
+
     /// Whether there is any hit with `0 < t < t_max` that `filter` accepts.
     #[inline]
     pub fn occluded(&self, ray: &Ray, t_max: f32, filter: impl Fn(&Candidate<'_>) -> bool) -> bool {
         self.query::<true>(ray, t_max, filter).is_some()
     }
 
+    /// [`World::occluded`] for the ray in `slot` of `rays`, of which `courses` has been prepared.
+    #[inline]
+    pub fn occluded_slot(
+        &self,
+        slot: usize,
+        rays: &Rays,
+        courses: &RayCourses,
+        t_max: f32,
+        filter: impl Fn(&Candidate<'_>) -> bool,
+    ) -> bool {
+        self.query::<true>(&courses.of(slot, rays.get(slot)), t_max, filter).is_some()
+    }
+
     fn query<const ANY: bool>(
         &self,
-        ray: &Ray,
+        course: &impl Course,
         t_max: f32,
         filter: impl Fn(&Candidate<'_>) -> bool,
     ) -> Option<Hit> {
+        let ray = course.ray();
         // Rays that lead nowhere would visit everything in vain.
         let leads_nowhere = !ray.direction.is_finite() || ray.direction == Vec3::ZERO || !(t_max > 0.0);
         if leads_nowhere || !ray.origin.is_finite() {
@@ -163,7 +191,7 @@ impl World {
             filter: &filter,
             state,
         };
-        self.hierarchies.top.traverse(self.level, ray, &mut search);
+        self.hierarchies.top.traverse(self.level, course, &mut search);
         search.state.best
     }
 

@@ -7,12 +7,14 @@ use super::{
 };
 use crate::{
     bxdf::{Bsdf, BsdfSample, BsdfValue, Lobe, ScatterStrategy},
-    light::{LightSamples, ShadowRay},
+    light::LightSamples,
     material::Waves,
     scene::{Scene, Surface},
     texture::TextureContext,
 };
-use tenfold_geometry::{Candidate, FlatSurfaces, Hit, PrimitiveId, ReferencePoint, SurfaceInteraction};
+use tenfold_geometry::{
+    Candidate, FlatSurfaces, Hit, PrimitiveId, RayCourses, ReferencePoint, SurfaceInteraction,
+};
 use tenfold_math::{Ray, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths, Spectra};
@@ -79,6 +81,7 @@ impl<'s> Sample<'s> {
 #[derive(Debug, Default)]
 pub struct Workspace<'a> {
     wave: Wave<'a>,
+    courses: RayCourses,
     surfaces: FlatSurfaces,
     lights: LightSamples,
     scattering: Scattering,
@@ -123,11 +126,15 @@ impl<'a> PathTracer<'a> {
 
     /// Takes the paths in the slots `live` to their next vertices, or to their ends.
     fn go_on(&self, live: Slots, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) -> Vertices {
-        let Workspace { wave, surfaces, rays, .. } = workspace;
+        let Workspace { wave, courses, surfaces, rays, .. } = workspace;
+        rays.path += live.len() as u64;
+        courses.prepare(&wave.rays);
         let mut hits = [None; WIDTH];
         for slot in live {
-            let path = &wave.paths[slot];
-            hits[slot] = self.intersect(&wave.rays.get(slot), path, &samples[path.sample], rays);
+            let (path, ray) = (&wave.paths[slot], wave.rays.get(slot));
+            let chance = Chance { sampler: samples[path.sample].sampler, bounce: path.bounce };
+            let stops = |c: &Candidate<'_>| self.stops(&ray, c, chance);
+            hits[slot] = self.scene.world.intersect_slot(slot, &wave.rays, courses, f32::INFINITY, stops);
         }
         let mut vertices = Vertices::default();
         let flat = self.meet_flat(live, &hits, samples, wave, surfaces, &mut vertices);
@@ -188,14 +195,6 @@ impl<'a> PathTracer<'a> {
         ended.or(flat)
     }
 
-    /// What a path next meets.
-    #[inline]
-    fn intersect(&self, ray: &Ray, path: &Path, sample: &Sample<'_>, rays: &mut RayCounts) -> Option<Hit> {
-        rays.path += 1;
-        let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
-        self.scene.world.intersect(ray, f32::INFINITY, |c| self.stops(ray, c, chance))
-    }
-
     /// Takes the path in `slot`, which has met `hit`, to its next vertex, through interfaces, or to its end.
     #[inline]
     fn meet(
@@ -249,7 +248,9 @@ impl<'a> PathTracer<'a> {
                     path.specular = true;
                 }
                 ray = surface.spawn_ray(ray.direction);
-                hit = self.intersect(&ray, path, sample, rays);
+                rays.path += 1;
+                let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
+                hit = scene.world.intersect(&ray, f32::INFINITY, |c| self.stops(&ray, c, chance));
                 continue;
             };
             if at_end {
@@ -370,7 +371,7 @@ impl<'a> PathTracer<'a> {
     /// Light from points sampled on lights.
     fn add_direct(&self, vertices: &Vertices, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
         let Strategies { light: strategy, combine, .. } = self.strategies;
-        let Workspace { wave, lights: light, scattering, arriving, rays, .. } = workspace;
+        let Workspace { wave, lights: light, courses, scattering, arriving, rays, .. } = workspace;
         let scene_lights = &self.scene.lights;
         let count = scene_lights.sampled(strategy);
         let seeing = vertices.even.or(vertices.glossy);
@@ -400,6 +401,7 @@ impl<'a> PathTracer<'a> {
             scattering.set(slot, f, pdf, wave.paths[slot].lanes.hero(), wi.dot(bsdf.frame().z).abs());
             parts[slot] = vertices.parting.contains(slot);
         }
+        courses.prepare(&light.shadow);
         weigh_sampled(combine, &wave.weights, scattering, light, &parts, arriving);
         for slot in lit {
             let arriving = arriving.get(slot);
@@ -410,7 +412,7 @@ impl<'a> PathTracer<'a> {
             let path = &wave.paths[slot];
             let sample = &mut samples[path.sample];
             let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
-            if !self.is_shadowed(&light.shadow_ray(slot), chance) {
+            if !self.is_shadowed(slot, light, courses, chance) {
                 sample.radiance += arriving;
             }
         }
@@ -518,9 +520,15 @@ impl<'a> PathTracer<'a> {
     }
 
     #[inline]
-    fn is_shadowed(&self, shadow: &ShadowRay, chance: Chance<'_>) -> bool {
-        let ShadowRay { ray, t_max } = *shadow;
-        self.scene.world.occluded(&ray, t_max, |c| {
+    fn is_shadowed(
+        &self,
+        slot: usize,
+        light: &LightSamples,
+        courses: &RayCourses,
+        chance: Chance<'_>,
+    ) -> bool {
+        let ray = light.shadow.get(slot);
+        self.scene.world.occluded_slot(slot, &light.shadow, courses, light.t_max[slot], |c| {
             // Light passes from one medium into the next.
             let material = self.scene.surfaces[c.user as usize].material;
             !self.scene.materials.is_interface(material) && self.stops(&ray, c, chance)

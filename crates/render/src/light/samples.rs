@@ -29,12 +29,6 @@ pub struct LightSamples {
 }
 
 impl LightSamples {
-    /// The shadow ray of a slot.
-    #[inline]
-    pub fn shadow_ray(&self, slot: usize) -> ShadowRay {
-        ShadowRay { ray: self.shadow.get(slot), t_max: self.t_max[slot] }
-    }
-
     #[inline]
     fn set(&mut self, slot: usize, sample: &LightSample, shadow: ShadowRay) {
         self.radiance.set(slot, sample.radiance);
