@@ -178,6 +178,12 @@ impl Rays {
     }
 }
 
+/// `v.normalize()`, to the bit, for loops over slots: of glam's square root the compiler does not know that vectors have it too.
+#[inline(always)]
+pub fn normalize(v: Vec3) -> Vec3 {
+    v * (1.0 / v.length_squared().sqrt())
+}
+
 /// Defines a function that is compiled several times, for the vector instructions that processors may have, and calls what is for this one.
 ///
 /// Its loops over slots become vector instructions where they have no branches and where what they call is inlined. The results are
@@ -244,6 +250,14 @@ mod tests {
         let mut points = Vec2s::ZERO;
         points.set(15, Vec2::ONE);
         assert_eq!((points.get(15), points.get(14)), (Vec2::ONE, Vec2::ZERO));
+    }
+
+    #[test]
+    fn unit_vectors_are_glams() {
+        for i in 1..1000 {
+            let v = Vec3::new(i as f32 * 0.37, -1.0 / i as f32, (i % 7) as f32);
+            assert_eq!(normalize(v), v.normalize());
+        }
     }
 
     vectorized! {

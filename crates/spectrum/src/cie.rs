@@ -14,7 +14,7 @@ pub const CIE_Y_INTEGRAL: f32 = 106.856895;
 static CIE1931: LazyLock<Observer> = LazyLock::new(|| {
     let mut table = Box::new([Vec4::ZERO; SAMPLES + 1]);
     for row in data::rows(include_str!("../data/cie1931.csv")) {
-        if let (&[_, x, y, z], Some(i)) = (row.as_slice(), dense_index(row[0])) {
+        if let (&[_, x, y, z], i @ 0..SAMPLES) = (row.as_slice(), dense_index(row[0])) {
             table[i] = Vec4::new(x, y, z, 0.0);
         }
     }
@@ -38,7 +38,7 @@ impl Observer {
     /// (x̄, ȳ, z̄) at a wavelength in nm; 0 outside the rendered range.
     #[inline]
     pub fn matching(&self, lambda: f32) -> Xyz {
-        Xyz(self.table[dense_index(lambda).unwrap_or(SAMPLES)].truncate())
+        Xyz(self.table[dense_index(lambda)].truncate())
     }
 
     /// One-sample estimate of ∫ L(λ) (x̄, ȳ, z̄)(λ) dλ: the mean over the lanes of L · (x̄, ȳ, z̄) / pdf, lanes of density 0

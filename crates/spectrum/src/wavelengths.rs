@@ -1,9 +1,6 @@
 //! The wavelengths a path carries, and the density they were drawn with.
 
-use crate::{
-    LAMBDA_MAX, LAMBDA_MIN, N,
-    spectrum::{SAMPLES, dense_index},
-};
+use crate::{LAMBDA_MAX, LAMBDA_MIN, N, spectrum::dense_index};
 use tenfold_math::{Floats, WIDTH, ops, vectorized};
 
 /// Centre of the visible-importance density, nm.
@@ -30,7 +27,7 @@ impl SampledWavelengths {
     /// The wavelengths `lambda` in nm, drawn with the densities `pdf` per nm.
     #[inline]
     pub fn new(lambda: [f32; N], pdf: [f32; N]) -> Self {
-        Self { lambda, pdf, nearest: lambda.map(nearest) }
+        Self { lambda, pdf, nearest: lambda.map(|l| dense_index(l) as u16) }
     }
 
     /// Wavelengths in nm.
@@ -128,19 +125,13 @@ vectorized! {
         let u = u.map(|u| [u; N]);
         // One loop over all lanes of all slots.
         let u = u.as_flattened();
-        let Lanes { lambda, pdf, nearest: nearests } = out;
-        let (lambda, pdf, nearests) = (lambda.as_flattened_mut(), pdf.as_flattened_mut(), nearests.as_flattened_mut());
+        let Lanes { lambda, pdf, nearest } = out;
+        let (lambda, pdf, nearest) = (lambda.as_flattened_mut(), pdf.as_flattened_mut(), nearest.as_flattened_mut());
         for i in 0..N * WIDTH {
             (lambda[i], pdf[i]) = visible(rotation(u[i], i));
-            nearests[i] = nearest(lambda[i]);
+            nearest[i] = dense_index(lambda[i]) as u16;
         }
     }
-}
-
-/// Where a table of [`SAMPLES`] values, and one for all wavelengths beyond, has that of `lambda`.
-#[inline(always)]
-fn nearest(lambda: f32) -> u16 {
-    dense_index(lambda).unwrap_or(SAMPLES) as u16
 }
 
 /// `u` rotated for the lane `i`, of those of all slots: `u + i / N` modulo 1.

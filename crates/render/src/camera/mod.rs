@@ -8,7 +8,9 @@ mod time_strategy;
 pub use lens::ThinLens;
 pub use projection::{Projection, ScreenWindow};
 pub use shutter::{Shutter, ShutterCurve, ShutterSample};
-use tenfold_math::{Motion, Ray, UVec2, Vec2, Vec3};
+use tenfold_math::{
+    Affine3A, Floats, Mat3, Motion, Ray, Rays, Slots, UVec2, Vec2, Vec2s, Vec3, WIDTH, normalize, vectorized,
+};
 pub use time_strategy::{PathTimes, TimeStrategy};
 
 /// A camera, perhaps moving. Camera space has the view along +z, +y up and +x to the right.
@@ -50,8 +52,18 @@ impl Camera {
         if let Some(lens) = &self.lens {
             ray = lens.refract(ray, u_lens);
         }
-        let world = self.world_from_camera.at(time);
-        Ray::new(world.point(ray.origin), world.vector(ray.direction).normalize(), time)
+        Placement::new(self.world_from_camera.at(time).affine()).ray(ray, time)
+    }
+
+    /// [`Camera::ray`] of each slot of `slots`; any ray in the others.
+    pub fn rays(&self, slots: Slots, film: &Vec2s, u_lens: &Vec2s, time: &Floats) -> Rays {
+        let mut rays = Rays::default();
+        if self.world_from_camera.is_moving() {
+            slots.for_each(|i| rays.set(i, self.ray(film.get(i), u_lens.get(i), time[i])));
+        } else {
+            still_rays(self, film, u_lens, time, &mut rays);
+        }
+        rays
     }
 
     /// The footprint of a pixel at a point `p` with normal `n` of a surface, as though the camera saw the tangent
@@ -81,6 +93,56 @@ impl Camera {
     }
 }
 
+/// Where a camera is at an instant, in scalars.
+#[derive(Copy, Clone)]
+struct Placement {
+    matrix: Mat3,
+    translation: Vec3,
+}
+
+impl Placement {
+    #[inline]
+    fn new(world_from_camera: &Affine3A) -> Self {
+        Self { matrix: world_from_camera.matrix3.into(), translation: world_from_camera.translation.into() }
+    }
+
+    /// The ray of the world that is `ray` in camera space.
+    #[inline(always)]
+    fn ray(&self, ray: Ray, time: f32) -> Ray {
+        let origin = self.matrix * ray.origin + self.translation;
+        Ray::new(origin, normalize(self.matrix * ray.direction), time)
+    }
+}
+
+vectorized! {
+    /// The rays of a camera that stands still.
+    fn still_rays(camera: &Camera, film: &Vec2s, u_lens: &Vec2s, time: &Floats, out: &mut Rays) {
+        let resolution = camera.resolution.as_vec2();
+        // A loop for each projection: its branches are not to be those of the slots.
+        match camera.projection {
+            Projection::Perspective { window } => {
+                for i in 0..WIDTH {
+                    out.set(i, Projection::Perspective { window }.ray(film.get(i) / resolution));
+                }
+            }
+            Projection::Orthographic { window } => {
+                for i in 0..WIDTH {
+                    out.set(i, Projection::Orthographic { window }.ray(film.get(i) / resolution));
+                }
+            }
+        }
+        if let Some(lens) = camera.lens {
+            for i in 0..WIDTH {
+                out.set(i, lens.refract(out.get(i), u_lens.get(i)));
+            }
+        }
+        let placement = Placement::new(camera.world_from_camera.start().affine());
+        for i in 0..WIDTH {
+            out.set(i, placement.ray(out.get(i), time[i]));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,6 +167,36 @@ mod tests {
         assert!((d / d.z - Vec3::new(-2.0, 1.0, 1.0)).length() < 1e-5, "{d}");
         let d = c.ray(vec2(100.0, 50.0), Vec2::splat(0.5), 0.0).direction;
         assert!((d - Vec3::Z).length() < 1e-6);
+    }
+
+    #[test]
+    fn slots_have_the_rays_of_each_alone() {
+        let lens = ThinLens { radius: 0.3, focal_distance: 5.0 };
+        let window = ScreenWindow::for_aspect(2.0);
+        let turned = |angle| {
+            let turn = Transform::rotate(angle, Vec3::new(1.0, 2.0, 3.0)).unwrap();
+            Transform::translate(Vec3::new(1.0, -2.0, 0.5)) * turn
+        };
+        let motions = [Motion::still(turned(0.7)), Motion::new(turned(0.7), 0.0, turned(0.9), 1.0)];
+        let number = |i: usize, k: usize| ((i + 1) * k % 97) as f32 / 97.0;
+        for projection in [Projection::perspective(0.6, window), Projection::orthographic(window)] {
+            for (lens, motion) in [None, Some(lens)].iter().flat_map(|l| motions.iter().map(move |m| (l, m)))
+            {
+                let c = Camera { world_from_camera: motion.clone(), ..camera(projection, *lens) };
+                let (mut film, mut u) = (Vec2s::ZERO, Vec2s::ZERO);
+                let time = std::array::from_fn(|i| number(i, 13));
+                for i in 0..WIDTH {
+                    film.set(i, vec2(200.0 * number(i, 5), 100.0 * number(i, 7)));
+                    // The centre of the lens too.
+                    u.set(i, if i == 3 { Vec2::splat(0.5) } else { vec2(number(i, 11), number(i, 17)) });
+                }
+                let slots = Slots::first(WIDTH - 2);
+                let rays = c.rays(slots, &film, &u, &time);
+                for i in slots {
+                    assert_eq!(rays.get(i), c.ray(film.get(i), u.get(i), time[i]), "{c:?}");
+                }
+            }
+        }
     }
 
     #[test]

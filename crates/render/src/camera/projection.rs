@@ -1,5 +1,5 @@
 use tenfold_math::ops;
-use tenfold_math::{Ray, UVec2, Vec2, Vec3, vec2};
+use tenfold_math::{Ray, UVec2, Vec2, Vec3, normalize, vec2};
 
 /// The part of the plane z = 1 (perspective, in units of tan(fov / 2)) or of the film (orthographic) in view.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ impl ScreenWindow {
     }
 
     /// The point at fractions `f` of width and height from the upper left corner.
-    #[inline]
+    #[inline(always)]
     fn at(&self, f: Vec2) -> Vec2 {
         vec2(self.min.x + (self.max.x - self.min.x) * f.x, self.max.y + (self.min.y - self.max.y) * f.y)
     }
@@ -52,10 +52,10 @@ impl Projection {
     }
 
     /// The ray at fractions `f` of the picture from its upper left corner, in camera space, of unit length.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, f: Vec2) -> Ray {
         match self {
-            Self::Perspective { window } => Ray::new(Vec3::ZERO, window.at(f).extend(1.0).normalize(), 0.0),
+            Self::Perspective { window } => Ray::new(Vec3::ZERO, normalize(window.at(f).extend(1.0)), 0.0),
             Self::Orthographic { window } => Ray::new(window.at(f).extend(0.0), Vec3::Z, 0.0),
         }
     }

@@ -1,6 +1,6 @@
-use super::{Shutter, ShutterSample};
+use super::{Shutter, ShutterCurve, ShutterSample};
 use std::{fmt, sync::Arc};
-use tenfold_math::{Bounds3, Vec3};
+use tenfold_math::{Bounds3, Floats, Slots, Vec3, WIDTH};
 use tenfold_sampling::PiecewiseConstant1D;
 
 /// How the instant is chosen at which the picture is seen. The picture is the same for all, the noise is not.
@@ -21,6 +21,21 @@ impl TimeStrategy {
             Self::Shutter => shutter.sample(u),
             Self::Path(path) => path.sample(shutter, u),
         }
+    }
+
+    /// [`TimeStrategy::sample`] of each of `slots`: the instants, and their weights.
+    #[inline]
+    pub fn samples(&self, slots: Slots, shutter: &Shutter, u: &Floats) -> (Floats, Floats) {
+        let (mut time, mut weight) = ([0.0; WIDTH], [1.0; WIDTH]);
+        if *self == Self::Shutter && shutter.curve == ShutterCurve::Box {
+            // The usual, in a loop without branches.
+            (0..WIDTH).for_each(|i| time[i] = shutter.instant(u[i]));
+        } else {
+            for i in slots {
+                ShutterSample { time: time[i], weight: weight[i] } = self.sample(shutter, u[i]);
+            }
+        }
+        (time, weight)
     }
 }
 
@@ -122,6 +137,22 @@ mod tests {
         let below = half.filter(|t| way(*t) < 0.5).count() as f32 / 2000.0;
         assert!((below - 0.5).abs() < 0.02, "{below}");
         assert!(path.sample(&shutter, 0.999).time > 2.5);
+    }
+
+    #[test]
+    fn slots_have_the_times_of_each_alone() {
+        for curve in [ShutterCurve::Box, ShutterCurve::trapezoid(0.2, 0.5).unwrap()] {
+            let shutter = shutter(curve);
+            let path = PathTimes::new("it", |t| Vec3::X * t * t, &shutter).unwrap();
+            for strategy in [TimeStrategy::Shutter, TimeStrategy::Path(Arc::new(path))] {
+                let u = std::array::from_fn(|i| i as f32 / WIDTH as f32);
+                let (time, weight) = strategy.samples(Slots::first(WIDTH), &shutter, &u);
+                for i in 0..WIDTH {
+                    let alone = ShutterSample { time: time[i], weight: weight[i] };
+                    assert_eq!(strategy.sample(&shutter, u[i]), alone, "{strategy}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ mod sensor;
 pub use bounds::PixelBounds;
 pub use exact::{ExactSum, LARGEST_SAMPLE};
 pub use sensor::Sensor;
-use tenfold_math::{UVec2, Vec3};
+use tenfold_math::{Slots, UVec2, Vec3, Vec3s};
 
 /// What a pixel has received so far.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -35,6 +35,17 @@ impl PixelSum {
         self.rgb[2].add(rgb.z);
         self.samples += 1;
         true
+    }
+
+    /// Adds the samples in `slots`; those that [`PixelSum::add`] leaves out.
+    #[inline]
+    pub fn add_all(&mut self, rgb: &Vec3s, slots: Slots) -> Slots {
+        let Some(sums) = exact::small_sums(rgb, slots) else {
+            return slots.keep(|slot| !self.add(rgb.get(slot)));
+        };
+        self.rgb.iter_mut().zip(&sums).for_each(|(sum, more)| sum.merge(more));
+        self.samples += slots.len() as u32;
+        Slots::NONE
     }
 
     /// Adds everything that `other` has received.
@@ -120,7 +131,7 @@ impl Film {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenfold_math::vec3;
+    use tenfold_math::{WIDTH, vec3};
 
     #[test]
     fn the_sum_does_not_depend_on_order_or_grouping() {
@@ -143,6 +154,20 @@ mod tests {
         assert_eq!(whole, parts);
         let mean = samples.iter().map(|v| v.y as f64).sum::<f64>() / 1000.0;
         assert!((whole.mean().y as f64 / mean - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn slots_add_up_to_what_each_alone_does() {
+        let ordinary = |i: usize| vec3(i as f32 * 0.37, -1e-13 * i as f32, 1e4 / (i + 1) as f32);
+        for bad in [Vec3::ONE, Vec3::splat(-1e6), vec3(0.0, f32::NAN, 0.0), vec3(f32::INFINITY, 0.0, 0.0)] {
+            let mut rgb = Vec3s::ZERO;
+            (0..WIDTH).for_each(|i| rgb.set(i, if i % 6 == 2 { bad } else { ordinary(i) }));
+            for slots in [Slots::first(WIDTH), Slots::first(11).keep(|i| i % 3 == 2), Slots::first(2)] {
+                let (mut all, mut each) = (PixelSum::default(), PixelSum::default());
+                let left_out = slots.keep(|i| !each.add(rgb.get(i)));
+                assert_eq!((all.add_all(&rgb, slots), all), (left_out, each), "{bad} {slots:?}");
+            }
+        }
     }
 
     #[test]

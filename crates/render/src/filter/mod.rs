@@ -9,7 +9,7 @@ mod tabulated;
 
 pub use profile::Profile;
 use tabulated::Tabulated;
-use tenfold_math::{Vec2, vec2};
+use tenfold_math::{Floats, Slots, Vec2, Vec2s, WIDTH, vec2};
 use tenfold_sampling::warp;
 
 /// A position relative to the centre of the pixel, with its weight.
@@ -19,6 +19,15 @@ pub struct FilterSample {
     pub offset: Vec2,
     /// `f / (pdf · ∫f)`: one where the filter is sampled perfectly, negative on negative lobes. Its mean is one.
     pub weight: f32,
+}
+
+/// What a [`FilterSample`] says, in each slot.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct FilterSamples {
+    /// See [`FilterSample::offset`].
+    pub offset: Vec2s,
+    /// See [`FilterSample::weight`].
+    pub weight: Floats,
 }
 
 /// A separable pixel filter.
@@ -62,16 +71,38 @@ impl Filter {
         let (y, wy) = self.y.sample(u.y, self.radius.y);
         FilterSample { offset: vec2(x, y), weight: wx * wy }
     }
+
+    /// [`Filter::sample`] of each of `slots`.
+    #[inline]
+    pub fn samples(&self, slots: Slots, u: &Vec2s) -> FilterSamples {
+        let mut samples = FilterSamples { offset: Vec2s::ZERO, weight: [1.0; WIDTH] };
+        let mut weight = [1.0; WIDTH];
+        self.x.samples(slots, &u.x, self.radius.x, &mut samples.offset.x, &mut samples.weight);
+        self.y.samples(slots, &u.y, self.radius.y, &mut samples.offset.y, &mut weight);
+        (0..WIDTH).for_each(|i| samples.weight[i] *= weight[i]);
+        samples
+    }
 }
 
 impl Axis {
     /// Position and weight.
-    #[inline]
+    #[inline(always)]
     fn sample(&self, u: f32, radius: f32) -> (f32, f32) {
         match self {
             Self::Box => ((2.0 * u - 1.0) * radius, 1.0),
             Self::Triangle => (warp::sample_tent(u, radius), 1.0),
             Self::Tabulated(table) => table.sample(u),
+        }
+    }
+
+    /// Positions and weights in each of `slots`.
+    #[inline]
+    fn samples(&self, slots: Slots, u: &Floats, radius: f32, x: &mut Floats, weight: &mut Floats) {
+        if let Self::Box = self {
+            // The usual, in a loop without branches.
+            (0..WIDTH).for_each(|i| (x[i], weight[i]) = Self::Box.sample(u[i], radius));
+        } else {
+            slots.for_each(|i| (x[i], weight[i]) = self.sample(u[i], radius));
         }
     }
 }
@@ -120,6 +151,20 @@ mod tests {
             assert!((mean / n - 1.0).abs() < 2e-3, "{profile:?} {}", mean / n);
             assert!((second / n - exact(profile, radius, |x| x * x)).abs() < 3e-3, "{profile:?}");
             assert!((cosine / n - exact(profile, radius, ops::cos)).abs() < 3e-3, "{profile:?}");
+        }
+    }
+
+    #[test]
+    fn slots_have_the_samples_of_each_alone() {
+        for profile in [Profile::Box, Profile::Triangle, Profile::Mitchell { b: 0.3, c: 0.4 }] {
+            let filter = Filter::new(profile, vec2(2.0, 1.5)).unwrap();
+            let mut u = Vec2s::ZERO;
+            (0..WIDTH).for_each(|i| u.set(i, vec2(i as f32 / 16.0, (i * 7 % 16) as f32 / 16.0)));
+            let samples = filter.samples(Slots::first(WIDTH), &u);
+            for i in 0..WIDTH {
+                let alone = FilterSample { offset: samples.offset.get(i), weight: samples.weight[i] };
+                assert_eq!(filter.sample(u.get(i)), alone, "{profile:?}");
+            }
         }
     }
 

@@ -15,7 +15,7 @@ use crate::{
 use tenfold_geometry::{
     Candidate, FlatSurfaces, Hit, PrimitiveId, RayCourses, ReferencePoint, SurfaceInteraction,
 };
-use tenfold_math::{Ray, Slots, Vec2s, Vec3, WIDTH};
+use tenfold_math::{Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths, Spectra};
 
@@ -60,11 +60,9 @@ pub struct PathTracer<'a> {
 pub struct Sample<'s> {
     /// Whom it asks for numbers.
     pub sampler: &'s PixelSample<'s>,
-    /// The ray from the camera.
-    pub ray: Ray,
     /// The wavelengths of the path.
     pub wavelengths: SampledWavelengths,
-    /// The estimate of the spectral radiance that arrives along the ray, against its direction, in the lanes of `wavelengths`, not
+    /// The estimate of the spectral radiance that arrives along its ray, against its direction, in the lanes of `wavelengths`, not
     /// yet divided by their densities.
     pub radiance: SampledSpectrum,
 }
@@ -72,8 +70,8 @@ pub struct Sample<'s> {
 impl<'s> Sample<'s> {
     /// A sample that has found no light yet.
     #[inline]
-    pub fn new(sampler: &'s PixelSample<'s>, ray: Ray, wavelengths: SampledWavelengths) -> Self {
-        Self { sampler, ray, wavelengths, radiance: SampledSpectrum::ZERO }
+    pub fn new(sampler: &'s PixelSample<'s>, wavelengths: SampledWavelengths) -> Self {
+        Self { sampler, wavelengths, radiance: SampledSpectrum::ZERO }
     }
 }
 
@@ -106,13 +104,10 @@ impl<'a> PathTracer<'a> {
         Self { indices: wavelength.map(SampledWavelengths::fixed), ..self }
     }
 
-    /// Estimates the radiance of `samples`, at most [`WIDTH`], by paths that take each step together. The estimate of each is the same, whichever others
-    /// are with it.
-    pub fn trace(&self, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
-        for (slot, sample) in samples.iter().enumerate() {
-            workspace.wave.start(slot, sample.ray);
-        }
-        let mut live = Slots::first(samples.len());
+    /// Estimates the radiance of `samples`, at most [`WIDTH`], with their `rays` from the camera in the first slots, by paths that take each step
+    /// together. The estimate of each is the same, whichever others are with it.
+    pub fn trace(&self, rays: &Rays, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
+        let mut live = workspace.wave.start(samples.len(), rays);
         loop {
             while !live.is_empty() {
                 let vertices = self.go_on(live, samples, workspace);

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::bxdf::Bsdf;
 use tenfold_geometry::{FlatSurfaces, ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
-use tenfold_math::{Ray, Rays, Slots, Vec3s, WIDTH};
+use tenfold_math::{Rays, Slots, Vec3s, WIDTH};
 use tenfold_spectrum::{SampledSpectrum, Spectra};
 
 /// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
@@ -74,12 +74,13 @@ impl EvenReflectors {
 }
 
 impl Wave<'_> {
-    /// Puts the path of a sample that starts at the camera into a slot.
+    /// Puts the paths of `count` samples that start at the camera, with the first of `rays`, into the first slots.
     #[inline]
-    pub(super) fn start(&mut self, slot: usize, ray: Ray) {
-        self.paths[slot] = Path::from_camera(slot);
-        self.weights.set(slot, &Weights::ONE, &Lanes::ALL);
-        self.rays.set(slot, ray);
+    pub(super) fn start(&mut self, count: usize, rays: &Rays) -> Slots {
+        (0..count).for_each(|slot| self.paths[slot] = Path::from_camera(slot));
+        (0..WIDTH).for_each(|slot| self.weights.set(slot, &Weights::ONE, &Lanes::ALL));
+        self.rays = *rays;
+        Slots::first(count)
     }
 
     /// Puts a path that has waited into the first slot.

@@ -1,13 +1,13 @@
 use super::RenderSettings;
 use crate::{
-    camera::{ShutterSample, TimeStrategy},
-    filter::FilterSample,
+    camera::TimeStrategy,
+    filter::FilterSamples,
     integrator::{PathTracer, Sample, Workspace},
     scene::Scene,
 };
 use arrayvec::ArrayVec;
-use tenfold_math::{Vec2, Vec3, WIDTH};
-use tenfold_sampling::{Dimension, PixelSample, Variable};
+use tenfold_math::{Floats, Vec2, Vec2s, Vec3, Vec3s, WIDTH};
+use tenfold_sampling::{Dimension, PixelSample, SampleGroup, Variable};
 use tenfold_spectrum::SampledWavelengths;
 
 /// The estimator of a pixel's integral: one sample of all its variables, from the film to the light.
@@ -38,49 +38,69 @@ impl<'a> PixelEstimator<'a> {
 
     /// The linear RGB of one sample, which may not be finite, with the weights of filter and shutter in.
     pub fn sample(&self, sampler: &PixelSample<'_>, workspace: &mut Workspace<'a>) -> Vec3 {
-        let mut rgb = Vec3::ZERO;
-        self.samples(std::slice::from_ref(sampler), workspace, |_, value| rgb = value);
-        rgb
+        self.samples(&SampleGroup::from(*sampler), workspace).get(0)
     }
 
-    /// Calls `take` with each of `samplers`, at most [`WIDTH`], and what [`PixelEstimator::sample`] is of it.
-    pub fn samples(
-        &self,
-        samplers: &[PixelSample<'_>],
-        workspace: &mut Workspace<'a>,
-        mut take: impl FnMut(&PixelSample<'_>, Vec3),
-    ) {
-        let mut weights = [0.0; WIDTH];
-        let mut samples = ArrayVec::<Sample<'_>, WIDTH>::new();
-        for (sampler, weight) in samplers.iter().zip(&mut weights) {
-            let (sample, w) = self.start(sampler);
-            *weight = w;
-            samples.push(sample);
-        }
-        self.tracer.trace(&mut samples, workspace);
-        for (sample, weight) in samples.iter().zip(weights) {
-            take(sample.sampler, self.scene.film.sensor.rgb(sample.radiance, &sample.wavelengths) * weight);
-        }
-    }
-
-    /// What is decided before light is traced, and its weight.
-    #[inline]
-    fn start<'s>(&self, sampler: &'s PixelSample<'s>) -> (Sample<'s>, f32) {
+    /// What [`PixelEstimator::sample`] is of each of `group`.
+    pub fn samples(&self, group: &SampleGroup<'_>, workspace: &mut Workspace<'a>) -> Vec3s {
         let scene = self.scene;
-        let filtered = match sampler.held(Variable::Pixel) {
-            None => scene.filter.sample(sampler.get_2d(Dimension::PIXEL)),
-            Some(place) => FilterSample { offset: place - Vec2::splat(0.5), weight: 1.0 },
-        };
-        let position = sampler.pixel().as_vec2() + Vec2::splat(0.5) + filtered.offset;
-        let wavelengths = self
-            .wavelengths
-            .unwrap_or_else(|| SampledWavelengths::sample_visible(sampler.get_1d(Dimension::WAVELENGTH)));
-        let u_lens = if scene.camera.has_lens() { sampler.get_2d(Dimension::LENS) } else { Vec2::ZERO };
-        let shutter = match sampler.held(Variable::Time) {
-            None => self.time.sample(&scene.camera.shutter, sampler.get_1d(Dimension::TIME)),
-            Some(fraction) => ShutterSample { time: scene.camera.shutter.instant(fraction.x), weight: 1.0 },
-        };
-        let ray = scene.camera.ray(position, u_lens, shutter.time);
-        (Sample::new(sampler, ray, wavelengths), filtered.weight * shutter.weight)
+        let FilterSamples { offset, mut weight } = self.filter(group);
+        let (time, time_weight) = self.times(group);
+        (0..WIDTH).for_each(|i| weight[i] *= time_weight[i]);
+        let centre = group.pixel().as_vec2() + Vec2::splat(0.5);
+        let film = Vec2s { x: offset.x.map(|x| centre.x + x), y: offset.y.map(|y| centre.y + y) };
+        let rays = scene.camera.rays(group.slots(), &film, &self.lens(group), &time);
+        let wavelengths = self.wavelengths(group);
+        let mut samples = ArrayVec::<Sample<'_>, WIDTH>::new();
+        for (sampler, wavelengths) in group.iter().zip(&wavelengths) {
+            samples.push(Sample::new(sampler, *wavelengths));
+        }
+        self.tracer.trace(&rays, &mut samples, workspace);
+        let mut xyz = Vec3s::ZERO;
+        for (slot, sample) in samples.iter().enumerate() {
+            xyz.set(slot, scene.film.sensor.xyz(sample.radiance, &sample.wavelengths));
+        }
+        scene.film.sensor.weighted_rgb(&xyz, &weight)
+    }
+
+    /// Where in the pixel.
+    #[inline]
+    fn filter(&self, group: &SampleGroup<'_>) -> FilterSamples {
+        let slots = group.slots();
+        match group.held(Variable::Pixel) {
+            None => self.scene.filter.samples(slots, &group.get_2d(slots, Dimension::PIXEL)),
+            Some(place) => {
+                let offset = place - Vec2::splat(0.5);
+                let offset = Vec2s { x: [offset.x; WIDTH], y: [offset.y; WIDTH] };
+                FilterSamples { offset, weight: [1.0; WIDTH] }
+            }
+        }
+    }
+
+    /// When, and the weights of that.
+    #[inline]
+    fn times(&self, group: &SampleGroup<'_>) -> (Floats, Floats) {
+        let (slots, shutter) = (group.slots(), &self.scene.camera.shutter);
+        match group.held(Variable::Time) {
+            None => self.time.samples(slots, shutter, &group.get_1d(slots, Dimension::TIME)),
+            Some(fraction) => ([shutter.instant(fraction.x); WIDTH], [1.0; WIDTH]),
+        }
+    }
+
+    /// Numbers for the place on the lens.
+    #[inline]
+    fn lens(&self, group: &SampleGroup<'_>) -> Vec2s {
+        if !self.scene.camera.has_lens() {
+            return Vec2s::ZERO;
+        }
+        group.get_2d(group.slots(), Dimension::LENS)
+    }
+
+    #[inline]
+    fn wavelengths(&self, group: &SampleGroup<'_>) -> [SampledWavelengths; WIDTH] {
+        match self.wavelengths {
+            None => SampledWavelengths::samples_visible(&group.get_1d(group.slots(), Dimension::WAVELENGTH)),
+            Some(wavelengths) => [wavelengths; WIDTH],
+        }
     }
 }

@@ -59,12 +59,11 @@ pub(super) fn render_item<'a>(
         let (sampler, indices) = samples(pixel);
         statistics.samples += indices.len() as u64;
         let sum = film.pixel_mut(pixel);
-        sampler.for_groups(pixel, indices, &mut room, |samples| {
-            estimator.samples(samples, &mut workspace, |sample, rgb| {
-                if !sum.add(rgb) {
-                    statistics.drop_sample(DroppedSample { pixel, index: sample.index() });
-                }
-            });
+        sampler.for_groups(pixel, indices, &mut room, |group| {
+            let rgb = estimator.samples(group, &mut workspace);
+            for slot in sum.add_all(&rgb, group.slots()) {
+                statistics.drop_sample(DroppedSample { pixel, index: group[slot].index() });
+            }
         });
     }
     statistics.rays = workspace.rays;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io;
 use std::path::PathBuf;
-use tenfold_math::{Ray, UVec2, Vec2, Vec3};
+use tenfold_math::{Ray, Rays, UVec2, Vec2, Vec3};
 use tenfold_render::compile::compile;
 use tenfold_render::film::Film;
 use tenfold_render::integrator::{DispersionRule, PathTracer, Sample, Strategies, Workspace};
@@ -98,7 +98,7 @@ pub(crate) fn radiance(
             let lambda = std::array::from_fn(|i| LAMBDA[(i + turn) % N]);
             let wavelengths = SampledWavelengths::new(lambda, [1.0; N]);
             let sample = sampler.at(UVec2::ZERO, value * N as u32 + turn as u32);
-            let l = traced(&tracer, Sample::new(&sample, ray, wavelengths));
+            let l = traced(&tracer, ray, Sample::new(&sample, wavelengths));
             for i in 0..N {
                 sums[(i + turn) % N] += f64::from(l.lane(i)) / N as f64;
             }
@@ -108,10 +108,11 @@ pub(crate) fn radiance(
     moments
 }
 
-/// The radiance of a sample.
-pub(crate) fn traced(tracer: &PathTracer<'_>, sample: Sample<'_>) -> SampledSpectrum {
-    let mut samples = [sample];
-    tracer.trace(&mut samples, &mut Workspace::default());
+/// The radiance of a sample that arrives along `ray`.
+pub(crate) fn traced(tracer: &PathTracer<'_>, ray: Ray, sample: Sample<'_>) -> SampledSpectrum {
+    let (mut rays, mut samples) = (Rays::default(), [sample]);
+    rays.set(0, ray);
+    tracer.trace(&rays, &mut samples, &mut Workspace::default());
     samples[0].radiance
 }
 

@@ -157,7 +157,7 @@ fn a_slit_is_seen_where_it_is() {
                 let seen: Welford = (0..4000)
                     .map(|i| {
                         let sample = sampler.at(UVec2::ZERO, i);
-                        let l = traced(&tracer, Sample::new(&sample, incoming, wavelengths));
+                        let l = traced(&tracer, incoming, Sample::new(&sample, wavelengths));
                         f64::from(l.average())
                     })
                     .collect();

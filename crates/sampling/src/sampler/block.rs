@@ -3,7 +3,7 @@
 use super::sobol::SobolSample;
 use crate::{Dimension, Variable};
 use std::cell::Cell;
-use tenfold_math::{Vec2, Vec2s, WIDTH, vectorized};
+use tenfold_math::{Floats, Vec2, Vec2s, WIDTH, vectorized};
 
 /// Samples whose numbers are computed together.
 const LANES: usize = WIDTH;
@@ -20,35 +20,32 @@ const SLOTS: usize = BOUNCES * VARIABLES;
 #[derive(Debug, Default)]
 #[repr(align(64))]
 struct Row {
-    x: [Cell<f32>; LANES],
-    y: [Cell<f32>; LANES],
+    x: Cell<Floats>,
+    y: Cell<Floats>,
 }
 
 impl Row {
     #[inline]
     fn get(&self, lane: usize) -> Vec2 {
-        Vec2::new(self.x[lane].get(), self.y[lane].get())
+        let [x, y]: [&Cell<[f32]>; 2] = [&self.x, &self.y];
+        Vec2::new(x.as_slice_of_cells()[lane].get(), y.as_slice_of_cells()[lane].get())
     }
 
     /// The numbers from the lane `first` on, in the first slots.
     #[inline]
     fn from(&self, first: usize) -> Vec2s {
-        let mut numbers = Vec2s::ZERO;
-        // Nearly always all of them, by moves of a length that is known.
-        if first == 0 {
-            (0..LANES).for_each(|lane| numbers.set(lane, self.get(lane)));
-        } else {
-            (first..LANES).for_each(|lane| numbers.set(lane - first, self.get(lane)));
+        let mut numbers = Vec2s { x: self.x.get(), y: self.y.get() };
+        if first != 0 {
+            numbers.x.rotate_left(first);
+            numbers.y.rotate_left(first);
         }
         numbers
     }
 
     #[inline]
     fn set(&self, numbers: &Vec2s) {
-        for lane in 0..LANES {
-            self.x[lane].set(numbers.x[lane]);
-            self.y[lane].set(numbers.y[lane]);
-        }
+        self.x.set(numbers.x);
+        self.y.set(numbers.y);
     }
 }
 

@@ -8,11 +8,13 @@ use crate::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
 /// Whole nanometres of the rendered range.
 pub(crate) const SAMPLES: usize = (LAMBDA_MAX - LAMBDA_MIN) as usize + 1;
 
-/// Index of the nanometre nearest to `lambda`, where it is in the rendered range.
+/// Index of the nanometre nearest to `lambda`; [`SAMPLES`] for all beyond the rendered range.
 #[inline(always)]
-pub(crate) fn dense_index(lambda: f32) -> Option<usize> {
+pub(crate) fn dense_index(lambda: f32) -> usize {
     let i = lambda + (0.5 - LAMBDA_MIN);
-    (i >= 0.0 && i < SAMPLES as f32).then_some(i as u16 as usize)
+    let i = if i >= 0.0 && i < SAMPLES as f32 { i } else { SAMPLES as f32 };
+    // SAFETY: it is between 0 and `SAMPLES`. Vectors have no instruction for conversions that saturate.
+    unsafe { i.to_int_unchecked::<i32>() as usize }
 }
 
 /// Values at every whole nanometre of the rendered range, looked up by rounding the wavelength as
@@ -43,7 +45,7 @@ impl DenselySampled {
     /// Value at the nanometre nearest to `lambda`.
     #[inline]
     pub fn eval(&self, lambda: f32) -> f32 {
-        dense_index(lambda).map_or(0.0, |i| self.values[i])
+        self.values[dense_index(lambda)]
     }
 
     /// Values at the wavelengths of a path.
