@@ -42,7 +42,7 @@ fn inverse(d: Vec3) -> Vec3 {
     Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z))
 }
 
-/// What [`Course`] asks of a ray, in each slot.
+/// What `Course` asks of a ray, in each slot.
 #[derive(Copy, Clone, Debug)]
 pub struct RayCourses {
     inverse: Vec3s,
