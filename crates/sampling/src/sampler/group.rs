@@ -1,4 +1,4 @@
-use super::PixelSample;
+use super::{Pattern, PixelSample};
 use crate::{Dimension, Variable};
 use arrayvec::ArrayVec;
 use std::ops::Deref;
@@ -52,7 +52,7 @@ impl SampleGroup<'_> {
     /// The numbers of all, where they are computed together and it is worth it.
     #[inline]
     fn kept(&self, slots: Slots, dimension: Dimension) -> Option<Vec2s> {
-        let (room, place) = self.first()?.kept?;
+        let Pattern::Kept(room, place) = self.first()?.pattern else { return None };
         (slots.len() > 1).then(|| room.get_lanes(place, dimension))
     }
 }

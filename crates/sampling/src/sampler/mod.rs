@@ -55,8 +55,6 @@ pub struct PixelSample<'a> {
     /// Hash of the seed and the pixel.
     pixel_seed: u64,
     pattern: Pattern<'a>,
-    /// Where numbers of the block it belongs to are kept, and its place in that.
-    kept: Option<(&'a SampleRoom, u32)>,
 }
 
 #[derive(Copy, Clone, Debug)]
@@ -67,6 +65,8 @@ enum Pattern<'a> {
     NRooks(NRooksSample),
     MultiJittered(MultiJitteredSample),
     Halton(HaltonSample),
+    /// At a place of a block whose numbers are kept.
+    Kept(&'a SampleRoom, u32),
     /// Every variable in its own way, found out when it is asked for.
     Planned(&'a Sampler),
 }
@@ -141,8 +141,8 @@ impl Sampler {
                     let taken =
                         (sobol.block_size() - place).min(indices.len() as u32).min(lanes - place % lanes);
                     for i in 0..taken {
-                        let kept = Some((&*room, place + i));
-                        group.0.push(PixelSample { index: first.index + i, kept, ..first });
+                        let (index, pattern) = (first.index + i, Pattern::Kept(&*room, place + i));
+                        group.0.push(PixelSample { pixel, index, pixel_seed: first.pixel_seed, pattern });
                     }
                 }
                 _ => {
@@ -193,7 +193,7 @@ impl Sampler {
                 Pattern::Halton(self.halton.at(seed, index))
             }
         };
-        PixelSample { pixel, index, pixel_seed, pattern, kept: None }
+        PixelSample { pixel, index, pixel_seed, pattern }
     }
 
     /// One variable of the sample, as the plan has it.
@@ -245,18 +245,18 @@ impl PixelSample<'_> {
     /// The number of a dimension, in `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
-        match self.kept {
-            Some((room, place)) => room.get(place, dimension).x,
-            None => self.compute_1d(dimension),
+        match self.pattern {
+            Pattern::Kept(room, place) => room.get(place, dimension).x,
+            _ => self.compute_1d(dimension),
         }
     }
 
     /// The two numbers of a dimension, each in `[0, 1)`.
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
-        match self.kept {
-            Some((room, place)) => room.get(place, dimension),
-            None => self.compute_2d(dimension),
+        match self.pattern {
+            Pattern::Kept(room, place) => room.get(place, dimension),
+            _ => self.compute_2d(dimension),
         }
     }
 
@@ -268,6 +268,7 @@ impl PixelSample<'_> {
             Pattern::NRooks(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_1d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_1d(dimension.key()),
+            Pattern::Kept(room, place) => room.get(*place, dimension).x,
             Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
                 Alone::Drawn(s) => s.get_1d(dimension),
                 Alone::Held(value) => value.x,
@@ -286,6 +287,7 @@ impl PixelSample<'_> {
             Pattern::NRooks(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::MultiJittered(s) => s.get_2d(dimension.key(), self.hash(dimension)),
             Pattern::Halton(s) => s.get_2d(dimension.key(), self.hash(dimension)),
+            Pattern::Kept(room, place) => room.get(*place, dimension),
             Pattern::Planned(s) => match s.alone(dimension.variable, self.pixel, self.index) {
                 Alone::Drawn(s) => s.get_2d(dimension),
                 Alone::Held(value) => value,
