@@ -43,6 +43,13 @@ pub struct Scene {
     pub needs_footprint: bool,
 }
 
+impl Scene {
+    /// Whether the camera or anything it sees moves, so that it matters when it is seen.
+    pub fn is_moving(&self) -> bool {
+        self.camera.world_from_camera.is_moving() || self.world.is_moving()
+    }
+}
+
 /// The look of a primitive.
 #[derive(Clone, Debug)]
 pub struct Surface {

@@ -40,6 +40,14 @@ impl Placement {
         Self { hierarchy, path, swept: None }
     }
 
+    /// Whether it changes its place in time.
+    pub(super) fn is_moving(&self) -> bool {
+        match &self.path {
+            Path::One(motion) => motion.is_moving(),
+            Path::Two(_) => true,
+        }
+    }
+
     /// Local to world at a time.
     #[inline]
     pub(super) fn at(&self, time: f32) -> Transform {

@@ -114,6 +114,11 @@ impl World {
         self.bounds
     }
 
+    /// Whether anything moves, so that it matters when rays are.
+    pub fn is_moving(&self) -> bool {
+        self.hierarchies.placements.iter().any(|placement| placement.is_moving())
+    }
+
     /// What was built, in numbers.
     pub fn stats(&self) -> &WorldStats {
         &self.stats

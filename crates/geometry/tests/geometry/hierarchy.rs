@@ -81,6 +81,30 @@ fn an_instance_of_nothing_is_nothing() {
 }
 
 #[test]
+fn a_world_moves_where_anything_in_it_does() {
+    let mut rng = Rng::new(8);
+    let ball = |motion: Option<Motion>, group: Option<usize>| {
+        let shape = sphere(&mut Rng::new(1), Transform::IDENTITY, false);
+        Geometry { motion, group: group.map(Id::new), ..still(shape, 0) }
+    };
+    let motion = random_motion(&mut rng, 1.0);
+    let placed = |motion| Instance { group: Id::new(0), motion };
+    let standing = || placed(Motion::still(Transform::IDENTITY));
+    for (geometry, instance, moves) in [
+        (ball(None, None), standing(), false),
+        (ball(None, Some(0)), standing(), false),
+        (ball(Some(Motion::still(Transform::IDENTITY)), Some(0)), standing(), false),
+        (ball(Some(motion.clone()), None), standing(), true),
+        (ball(Some(motion.clone()), Some(0)), standing(), true),
+        (ball(None, Some(0)), placed(motion), true),
+    ] {
+        let (geometries, instances) = (vec![ball(None, None), geometry], vec![instance]);
+        let world = World::build(WorldDesc { geometries, instances, shutter: [0.0, 1.0] }).unwrap();
+        assert_eq!(world.is_moving(), moves);
+    }
+}
+
+#[test]
 fn coincident_primitives_are_all_found() {
     let mut parts = MeshParts {
         positions: vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)],

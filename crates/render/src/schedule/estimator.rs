@@ -17,8 +17,8 @@ pub struct PixelEstimator<'a> {
     tracer: PathTracer<'a>,
     /// The wavelengths of all samples, where they are not drawn.
     wavelengths: Option<SampledWavelengths>,
-    /// How the time is drawn.
-    time: TimeStrategy,
+    /// How the time is drawn, where it matters.
+    time: Option<TimeStrategy>,
 }
 
 impl<'a> PixelEstimator<'a> {
@@ -32,7 +32,8 @@ impl<'a> PixelEstimator<'a> {
             scene,
             tracer: tracer.with_indices_at(settings.index_wavelength),
             wavelengths: settings.wavelength.map(SampledWavelengths::held),
-            time: settings.time.clone(),
+            time: (scene.is_moving() || settings.time != TimeStrategy::Shutter)
+                .then(|| settings.time.clone()),
         }
     }
 
@@ -81,9 +82,11 @@ impl<'a> PixelEstimator<'a> {
     #[inline]
     fn times(&self, group: &SampleGroup<'_>) -> (Floats, Floats) {
         let (slots, shutter) = (group.slots(), &self.scene.camera.shutter);
-        match group.held(Variable::Time) {
-            None => self.time.samples(slots, shutter, &group.get_1d(slots, Dimension::TIME)),
-            Some(fraction) => ([shutter.instant(fraction.x); WIDTH], [1.0; WIDTH]),
+        let at = |fraction| ([shutter.instant(fraction); WIDTH], [1.0; WIDTH]);
+        match (&self.time, group.held(Variable::Time)) {
+            (_, Some(fraction)) => at(fraction.x),
+            (Some(time), None) => time.samples(slots, shutter, &group.get_1d(slots, Dimension::TIME)),
+            (None, None) => at(0.0),
         }
     }
 
