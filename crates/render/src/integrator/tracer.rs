@@ -8,14 +8,14 @@ use super::{
 use crate::{
     bxdf::{Bsdf, BsdfSample, BsdfValue, Lobe, ScatterStrategy},
     light::LightSamples,
-    material::Waves,
+    material::{Material, Waves},
     scene::{Scene, Surface},
     texture::TextureContext,
 };
 use tenfold_geometry::{
     Candidate, FlatSurfaces, Hit, PrimitiveId, RayCourses, ReferencePoint, SurfaceInteraction,
 };
-use tenfold_math::{Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
+use tenfold_math::{Frame, Id, Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths, Spectra};
 
@@ -132,17 +132,17 @@ impl<'a> PathTracer<'a> {
             hits[slot] = self.scene.world.intersect_slot(slot, &wave.rays, courses, f32::INFINITY, stops);
         }
         let mut vertices = Vertices::default();
-        let flat = self.meet_flat(live, &hits, samples, wave, surfaces, &mut vertices);
-        for slot in live.without(flat) {
+        let plain = self.meet_plain(live, &hits, samples, wave, surfaces, &mut vertices);
+        for slot in live.without(plain) {
             let sample = &mut samples[wave.paths[slot].sample];
             self.meet(slot, hits[slot], sample, wave, rays, &mut vertices);
         }
         vertices
     }
 
-    /// Takes those of the paths in the slots `live` to their next vertices, or to their ends, that have met what most surfaces are: flat even reflectors.
-    /// Returns their slots.
-    fn meet_flat(
+    /// Takes those of the paths in the slots `live` to their next vertices, or to their ends, that have met surfaces like most: nothing that
+    /// emits, and neither relief nor chance. Returns their slots.
+    fn meet_plain(
         &self,
         live: Slots,
         hits: &[Option<Hit>; WIDTH],
@@ -152,7 +152,7 @@ impl<'a> PathTracer<'a> {
         vertices: &mut Vertices,
     ) -> Slots {
         let scene = self.scene;
-        if scene.needs_footprint || self.strategies.scatter != ScatterStrategy::Bsdf {
+        if scene.needs_footprint {
             return Slots::NONE;
         }
         let (mut ended, mut candidates) = (Slots::NONE, Slots::NONE);
@@ -165,7 +165,7 @@ impl<'a> PathTracer<'a> {
             let at_end = wave.paths[slot].bounce >= scene.max_depth;
             if at_end && !scene.materials.may_be_interface(look.material) {
                 ended.insert(slot);
-            } else if scene.materials.is_even_reflector(look.material) {
+            } else if scene.materials.is_plain(look.material) {
                 candidates.insert(slot);
             }
         }
@@ -179,15 +179,66 @@ impl<'a> PathTracer<'a> {
                 face_index: surfaces.face_index[slot],
                 ..TextureContext::default()
             };
-            let waves = self.waves(&samples[wave.paths[slot].sample]);
+            let sample = &samples[wave.paths[slot].sample];
             let material = self.look(hit.primitive).material;
-            let reflectance = scene.materials.even_reflectance(material, &scene.textures, &at, waves);
-            if let Some(reflectance) = reflectance.filter(|r| !r.is_black()) {
-                wave.arrive_flat(slot, surfaces, reflectance);
-                vertices.even.insert(slot);
+            let (n, tangent, wo) = (at.n, surfaces.dpdu.get(slot), surfaces.wo.get(slot));
+            let (p, p_error, time) = (at.p, surfaces.p_error.get(slot), wave.rays.time[slot]);
+            let from = ReferencePoint { p, p_error, n, ns: n, one_sided: false, time };
+            if let Some(reflectance) = self.even_reflectance(material, &at, sample) {
+                wave.arrive_at_even(slot, from, wo, [n, tangent], reflectance, vertices);
+                continue;
             }
+            let bxdf = scene.materials.bxdf(material, &scene.textures, &at, self.waves(sample));
+            let frame = Frame::from_z_and_tangent(n, tangent);
+            wave.bsdfs[slot] = bxdf.map(|bxdf| self.at_work(Bsdf::new(frame, bxdf), sample));
+            self.arrive(slot, from, wo, wave, vertices);
         }
         ended.or(flat)
+    }
+
+    /// The albedo of what scatters as an even reflector, by its own density.
+    #[inline]
+    fn even_reflectance(
+        &self,
+        material: Id<Material>,
+        at: &TextureContext,
+        sample: &Sample<'_>,
+    ) -> Option<SampledSpectrum> {
+        let scene = self.scene;
+        let by_itself = self.strategies.scatter == ScatterStrategy::Bsdf;
+        let reflectance =
+            || scene.materials.even_reflectance(material, &scene.textures, at, self.waves(sample));
+        by_itself.then(reflectance).flatten()
+    }
+
+    /// Puts the path in `slot` at a vertex where it scatters as [`Wave::bsdfs`] says.
+    #[inline]
+    fn arrive(
+        &self,
+        slot: usize,
+        from: ReferencePoint,
+        wo: Vec3,
+        wave: &mut Wave<'a>,
+        vertices: &mut Vertices,
+    ) {
+        let (path, Some(bsdf)) = (&mut wave.paths[slot], &wave.bsdfs[slot]) else { return };
+        if self.rule == DispersionRule::Terminate && path.lanes.count() > 1 && bsdf.is_dispersive() {
+            let weights = terminate_secondary(path, &wave.weights.get(slot));
+            wave.weights.set(slot, &weights, &path.lanes);
+        }
+        if path.lanes.count() > 1 && bsdf.parts_wavelengths() {
+            let mut weights = wave.weights.get(slot);
+            weights.settle(&path.lanes);
+            wave.weights.set(slot, &weights, &path.lanes);
+            vertices.parting.insert(slot);
+        }
+        let lobes = bsdf.lobes();
+        if lobes.has_density() {
+            vertices.glossy.insert(slot);
+        }
+        wave.from.set(slot, if lobes.is_transmissive() { from } else { from.seen_from(wo) });
+        wave.wo.set(slot, wo);
+        vertices.other.insert(slot);
     }
 
     /// Takes the path in `slot`, which has met `hit`, to its next vertex, through interfaces, or to its end.
@@ -219,58 +270,30 @@ impl<'a> PathTracer<'a> {
                 return;
             }
             let at = self.context(&surface);
-            if !at_end && self.strategies.scatter == ScatterStrategy::Bsdf {
-                let waves = self.waves(sample);
-                if let Some(reflectance) =
-                    scene.materials.even_reflectance(material, &scene.textures, &at, waves)
-                {
-                    if !reflectance.is_black() {
-                        wave.even.set(slot, &surface.shading, reflectance);
-                        wave.arrive(slot, surface.reference().seen_from(surface.wo), &surface);
-                        vertices.even.insert(slot);
-                    }
-                    return;
-                }
-            }
-            wave.bsdfs[slot] = self.bsdf(path, &surface, &at, passes, sample);
-            let Some(bsdf) = &wave.bsdfs[slot] else {
-                passes += 1;
-                if passes > MOST_PASSES {
-                    return;
-                }
-                if !scene.materials.is_interface(material) {
-                    // Shadow rays stop at what is an interface by chance alone: no light sample could have come this way.
-                    path.specular = true;
-                }
-                ray = surface.spawn_ray(ray.direction);
-                rays.path += 1;
-                let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
-                hit = scene.world.intersect(&ray, f32::INFINITY, |c| self.stops(&ray, c, chance));
-                continue;
-            };
-            if at_end {
+            if !at_end && let Some(reflectance) = self.even_reflectance(material, &at, sample) {
+                let axes = [surface.shading.n, surface.shading.dpdu];
+                wave.arrive_at_even(slot, surface.reference(), surface.wo, axes, reflectance, vertices);
                 return;
             }
-            if self.rule == DispersionRule::Terminate && path.lanes.count() > 1 && bsdf.is_dispersive() {
-                let weights = terminate_secondary(path, &wave.weights.get(slot));
-                wave.weights.set(slot, &weights, &path.lanes);
+            wave.bsdfs[slot] = self.bsdf(path, &surface, &at, passes, sample);
+            if wave.bsdfs[slot].is_some() {
+                if !at_end {
+                    self.arrive(slot, surface.reference(), surface.wo, wave, vertices);
+                }
+                return;
             }
-            if path.lanes.count() > 1 && bsdf.parts_wavelengths() {
-                let mut weights = wave.weights.get(slot);
-                weights.settle(&path.lanes);
-                wave.weights.set(slot, &weights, &path.lanes);
-                vertices.parting.insert(slot);
+            passes += 1;
+            if passes > MOST_PASSES {
+                return;
             }
-            if bsdf.lobes().has_density() {
-                vertices.glossy.insert(slot);
+            if !scene.materials.is_interface(material) {
+                // Shadow rays stop at what is an interface by chance alone: no light sample could have come this way.
+                path.specular = true;
             }
-            let mut from = surface.reference();
-            if !bsdf.lobes().is_transmissive() {
-                from = from.seen_from(surface.wo);
-            }
-            wave.arrive(slot, from, &surface);
-            vertices.other.insert(slot);
-            return;
+            ray = surface.spawn_ray(ray.direction);
+            rays.path += 1;
+            let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
+            hit = scene.world.intersect(&ray, f32::INFINITY, |c| self.stops(&ray, c, chance));
         }
     }
 
@@ -311,13 +334,16 @@ impl<'a> PathTracer<'a> {
             hash::unit_f32(hash::combine(sample.sampler.hash(dimension), passes.into()) as u32)
         };
         let material = self.look(surface.primitive).material;
-        let mut bsdf =
-            scene.materials.bsdf(material, &scene.textures, surface, at, self.waves(sample), u_mix);
-        if let Some(bsdf) = &mut bsdf {
-            bsdf.set_strategy(self.strategies.scatter);
-            if sample.sampler.held(Variable::ScatterDirection).is_some() {
-                bsdf.hold_direction();
-            }
+        let bsdf = scene.materials.bsdf(material, &scene.textures, surface, at, self.waves(sample), u_mix);
+        bsdf.map(|bsdf| self.at_work(bsdf, sample))
+    }
+
+    /// A scattering function, sampled as this tracer and the numbers of `sample` have it.
+    #[inline]
+    fn at_work(&self, mut bsdf: Bsdf<'a>, sample: &Sample<'_>) -> Bsdf<'a> {
+        bsdf.set_strategy(self.strategies.scatter);
+        if sample.sampler.held(Variable::ScatterDirection).is_some() {
+            bsdf.hold_direction();
         }
         bsdf
     }

@@ -5,8 +5,8 @@ use super::{
     weights::{WaveWeights, Weights},
 };
 use crate::bxdf::Bsdf;
-use tenfold_geometry::{FlatSurfaces, ReferencePoint, ReferencePoints, Shading, SurfaceInteraction};
-use tenfold_math::{Rays, Slots, Vec3s, WIDTH};
+use tenfold_geometry::{ReferencePoint, ReferencePoints};
+use tenfold_math::{Rays, Slots, Vec3, Vec3s, WIDTH};
 use tenfold_spectrum::{SampledSpectrum, Spectra};
 
 /// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
@@ -64,15 +64,6 @@ impl Default for Wave<'_> {
     }
 }
 
-impl EvenReflectors {
-    #[inline]
-    pub(super) fn set(&mut self, slot: usize, shading: &Shading, reflectance: SampledSpectrum) {
-        self.n.set(slot, shading.n);
-        self.tangent.set(slot, shading.dpdu);
-        self.reflectance.set(slot, reflectance);
-    }
-}
-
 impl Wave<'_> {
     /// Puts the paths of `count` samples that start at the camera, with the first of `rays`, into the first slots.
     #[inline]
@@ -104,23 +95,25 @@ impl Wave<'_> {
         self.paths[slot].carried(&self.weights.get(slot), combine, emitted, light_pdf)
     }
 
-    /// Puts the path in a slot at a vertex on a flat even reflector.
+    /// Puts the path in a slot at an even reflector whose shading frame has these `axes`: z, and what x is nearest to. At a black one it ends.
     #[inline]
-    pub(super) fn arrive_flat(&mut self, slot: usize, surfaces: &FlatSurfaces, reflectance: SampledSpectrum) {
-        let (n, wo) = (surfaces.n.get(slot), surfaces.wo.get(slot));
-        let (p, p_error, time) = (surfaces.p.get(slot), surfaces.p_error.get(slot), self.rays.time[slot]);
-        let from = ReferencePoint { p, p_error, n, ns: n, one_sided: false, time };
+    pub(super) fn arrive_at_even(
+        &mut self,
+        slot: usize,
+        from: ReferencePoint,
+        wo: Vec3,
+        [n, tangent]: [Vec3; 2],
+        reflectance: SampledSpectrum,
+        vertices: &mut Vertices,
+    ) {
+        if reflectance.is_black() {
+            return;
+        }
         self.from.set(slot, from.seen_from(wo));
         self.wo.set(slot, wo);
         self.even.n.set(slot, n);
-        self.even.tangent.set(slot, surfaces.dpdu.get(slot));
+        self.even.tangent.set(slot, tangent);
         self.even.reflectance.set(slot, reflectance);
-    }
-
-    /// Puts the path in a slot at a vertex.
-    #[inline]
-    pub(super) fn arrive(&mut self, slot: usize, from: ReferencePoint, surface: &SurfaceInteraction) {
-        self.from.set(slot, from);
-        self.wo.set(slot, surface.wo);
+        vertices.even.insert(slot);
     }
 }

@@ -192,13 +192,25 @@ impl Materials {
         Some(Bsdf::new(frame, bxdf))
     }
 
-    /// Whether surfaces of this material are even reflectors without relief, whose frames are the shapes' own.
+    /// Whether surfaces of this material scatter all in the same way, and in the shapes' own frames: no mix, no interface, no relief.
     #[inline]
-    pub fn is_even_reflector(&self, id: Id<Material>) -> bool {
-        matches!((&self.all[id.index()], &self.reliefs[id.index()]), (Material::Diffuse(_), Relief::Smooth))
+    pub fn is_plain(&self, id: Id<Material>) -> bool {
+        !self.may_be_interface(id) && matches!(self.reliefs[id.index()], Relief::Smooth)
     }
 
-    /// The albedo of such a surface: what [`Materials::bsdf`] answers is a [`Bxdf::Diffuse`] of it. `None` of others.
+    /// The scattering function of a plain surface in its frame, at a point as textures see it; `None` where it takes more to tell.
+    #[inline]
+    pub fn bxdf<'w>(
+        &self,
+        id: Id<Material>,
+        textures: &Textures,
+        at: &TextureContext,
+        waves: impl Into<Waves<'w>>,
+    ) -> Option<Bxdf<'_>> {
+        self.all[id.index()].bxdf(&Point { textures, context: at, waves: waves.into() })
+    }
+
+    /// The albedo where a surface of this material is a plain even reflector: what [`Materials::bsdf`] answers is a [`Bxdf::Diffuse`] of it. `None` of others.
     #[inline]
     pub fn even_reflectance<'w>(
         &self,
