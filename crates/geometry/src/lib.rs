@@ -27,8 +27,8 @@ pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};
 pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
 pub use sample::{ReferencePoint, ReferencePoints, ShapeSample, ShapeSamples, SurfacePoint};
 pub use shape::{
-    BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape, ShapeError,
-    ShapeHit, Sphere, SphereParams, Triangle,
+    Ball, Balls, BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape,
+    ShapeError, ShapeHit, Sphere, SphereParams, Triangle,
 };
 pub use subdivision::{SubdivisionError, loop_subdivide};
 pub use world::{FlatSurfaces, Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};

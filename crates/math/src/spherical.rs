@@ -2,10 +2,10 @@ use crate::ops;
 use crate::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// The unit vector at polar angle θ (given as sine and cosine) and azimuth `phi`, in radians, around z.
+/// The unit vector at polar angle θ (given as sine and cosine) and azimuth `phi`, in radians, of at most 10⁵, around z.
 #[inline]
 pub fn spherical_direction(sin_theta: f32, cos_theta: f32, phi: f32) -> Vec3 {
-    let (s, c) = ops::sin_cos(phi);
+    let (s, c) = ops::sin_cos_of_moderate(phi);
     Vec3::new(sin_theta * c, sin_theta * s, cos_theta)
 }
 

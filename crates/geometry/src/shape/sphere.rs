@@ -72,10 +72,11 @@ impl Sphere {
         let phi_max = phi_max.clamp(0.0, TAU);
         let placement = Placement::new(to_world, reverse_orientation);
         let whole = z_min == -radius && z_max == radius && phi_max == TAU;
-        let round = placement
-            .similarity
-            .filter(|_| whole)
-            .map(|scale| Ball { centre: to_world.point(Vec3::ZERO), radius: scale * radius });
+        let round = placement.similarity.filter(|_| whole).map(|scale| Ball {
+            centre: to_world.point(Vec3::ZERO),
+            radius: scale * radius,
+            flip: placement.flip,
+        });
         let mut sphere = Self {
             placement,
             radius,
@@ -118,13 +119,19 @@ impl Sphere {
         Vec3::new(r * cos, r * sin, z)
     }
 
+    /// The sphere as a ball, where it is one.
+    #[inline]
+    pub(super) fn ball(&self) -> Option<&Ball> {
+        self.round.as_ref()
+    }
+
     pub(super) fn bounds(&self) -> Bounds3 {
         let r = self.radius;
         let b = self
             .placement
             .to_world
             .bounds(&Bounds3::new(Vec3::new(-r, -r, self.z_min), Vec3::new(r, r, self.z_max)));
-        if let Some(Ball { centre: c, radius: r }) = self.round {
+        if let Some(Ball { centre: c, radius: r, .. }) = self.round {
             // The box of a turned box is larger than that of the ball.
             let ball = Bounds3::new(c - r, c + r).expanded(1e-5 * (r + c.abs().max_element()));
             return Bounds3 { min: b.min.max(ball.min), max: b.max.min(ball.max) };
@@ -214,7 +221,6 @@ impl Sphere {
     }
 
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
-        let flipped = |n: Vec3| if self.placement.flip { -n } else { n };
         if let Some(ball) = &self.round {
             let outward = ball.outward(ray, hit.t);
             let (object, phi) = self.surface_of_ball(ball, outward);
@@ -222,14 +228,15 @@ impl Sphere {
             let [p, p_error] = ball.point(outward);
             // The unit normal moves as the point does.
             let [dndu, dndv] = [dpdu, dpdv].map(|d| d / ball.radius);
-            let (n, uv) = (flipped(outward), self.object_uv(object, phi));
+            let (n, uv) = (ball.normal(outward), self.object_uv(object, phi));
             return SurfaceInteraction::new(p, p_error, n, uv, Vec2::ZERO, [dpdu, dpdv, dndu, dndv], ray);
         }
         let (p, phi) = self.surface(&self.placement.ray(ray), f64::from(hit.t));
         let [dpdu, dpdv] = self.derivatives(p);
         let [dndu, dndv] = [dpdu, dpdv].map(|d| d / self.radius);
-        let (n, uv, derivatives) =
-            (flipped(p / self.radius), self.object_uv(p, phi), [dpdu, dpdv, dndu, dndv]);
+        let outward = p / self.radius;
+        let n = if self.placement.flip { -outward } else { outward };
+        let (uv, derivatives) = (self.object_uv(p, phi), [dpdu, dpdv, dndu, dndv]);
         self.placement.place(&SurfaceInteraction::new(
             p,
             gamma(5) * p.abs(),
@@ -275,7 +282,7 @@ impl Sphere {
         Some(ShapeSample {
             p,
             p_error,
-            n: if self.placement.flip { -outward } else { outward },
+            n: ball.normal(outward),
             uv: self.object_uv(object, phi),
             param: Vec2::ZERO,
             pdf: cone.pdf(),

@@ -6,7 +6,7 @@ use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 use tenfold_geometry::*;
 use tenfold_math::ops;
-use tenfold_math::{Frame, Ray, Transform, Vec2, Vec3};
+use tenfold_math::{Frame, Ray, Slots, Transform, Vec2, Vec2s, Vec3, WIDTH};
 use tenfold_sampling::warp::invert_uniform_triangle;
 use tenfold_testkit::{Options, Rng, chi2};
 
@@ -376,6 +376,40 @@ fn whole_spheres_are_sampled_by_the_cone_that_is_seen() {
         )
         .check("sphere from inside");
     }
+}
+
+#[test]
+fn balls_side_by_side_are_sampled_as_each_by_itself() {
+    let mut rng = Rng::new(11);
+    for _ in 0..200 {
+        let (mut balls, mut from, mut u) = (Balls::default(), ReferencePoints::default(), Vec2s::ZERO);
+        let mut alone = [const { None }; WIDTH];
+        for (slot, alone) in alone.iter_mut().enumerate() {
+            let t = random_similarity(&mut rng, 1.0);
+            let shape = Shape::Sphere(Sphere::new(t, slot % 3 == 0, SphereParams::whole(0.7)).unwrap());
+            let (centre, radius) = (t.point(Vec3::ZERO), 0.7 * t.vector(Vec3::X).length());
+            let distance = [0.5, 1.0 + 1e-6, 1.5, 20.0, 1000.0][slot % 5];
+            let reference = references(&mut rng, centre, &[1.0, distance * radius])[1];
+            balls.set(slot, shape.primitive(0).ball().unwrap());
+            from.set(slot, reference);
+            u.set(slot, if slot == 7 { Vec2::splat(0.5) } else { rng.vec2() });
+            *alone = shape.primitive(0).sample_from(&reference, u.get(slot));
+        }
+        let mut out = ShapeSamples::default();
+        let outside = balls.samples_from(Slots::first(WIDTH - 1), &from, &u, &mut out);
+        let inside = Slots::first(WIDTH - 1).without(outside);
+        assert!(
+            inside.contains(5) && inside.keep(|slot| slot % 5 > 1).is_empty() && !outside.contains(WIDTH - 1)
+        );
+        for slot in outside {
+            let one = (out.p.get(slot), out.p_error.get(slot), out.n.get(slot), out.pdf[slot]);
+            let other = alone[slot].unwrap();
+            assert_eq!(one, (other.p, other.p_error, other.n, other.pdf), "{slot}");
+        }
+    }
+    let partial = SphereParams { z_max: 0.5, ..SphereParams::default() };
+    let partial = Shape::Sphere(Sphere::new(Transform::IDENTITY, false, partial).unwrap());
+    assert_eq!(partial.primitive(0).ball(), None);
 }
 
 #[test]

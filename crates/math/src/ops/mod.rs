@@ -7,7 +7,7 @@
 
 mod trigonometry;
 
-pub use trigonometry::sin_cos_of_small;
+pub use trigonometry::{sin_cos_of_moderate, sin_cos_of_small};
 
 /// A float with elementary functions: `f32` and `f64`.
 pub trait Float: Copy {

@@ -65,12 +65,17 @@ pub(super) fn sin_cos(x: f64) -> (f64, f64) {
 /// [`sin_cos`] to the precision of single floats.
 #[inline]
 pub(super) fn sin_cos_f32(x: f32) -> (f32, f32) {
-    let x = f64::from(x);
-    let is_usual = x.abs() <= MOST;
+    let is_usual = f64::from(x).abs() <= MOST;
     if !is_usual {
-        return (libm::sin(x) as f32, libm::cos(x) as f32);
+        return (libm::sin(x.into()) as f32, libm::cos(x.into()) as f32);
     }
-    let (r, quarters) = reduce(x);
+    sin_cos_of_moderate(x)
+}
+
+/// Sine and cosine of an angle of at most 10⁵ radians, without branches: the bits of [`sin_cos`](super::sin_cos).
+#[inline]
+pub fn sin_cos_of_moderate(x: f32) -> (f32, f32) {
+    let (r, quarters) = reduce(x.into());
     let z = r * r;
     // Coefficients of FreeBSD's libm, `k_sinf.c` and `k_cosf.c`.
     let [s, c] = polynomials(

@@ -7,7 +7,7 @@ use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
 use tenfold_geometry::{
-    NormalCone, Primitive, ReferencePoint, ReferencePoints, Shape, ShapeSamples, SurfacePoint,
+    Ball, NormalCone, Primitive, ReferencePoint, ReferencePoints, Shape, ShapeSamples, SurfacePoint,
 };
 use tenfold_math::{Slots, Vec2, Vec2s, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
@@ -194,9 +194,20 @@ impl DiffuseAreaLight {
         u: &Vec2s,
         out: &mut ShapeSamples,
     ) -> bool {
-        let is_even = matches!(self.emission().radiance, AreaRadiance::Uniform(_));
-        let by_solid_angle = matches!(strategy, ByTexture | Complementary | SolidAngle);
-        is_even && by_solid_angle && self.emitter().samples_from(slots, from, u, out)
+        self.is_sampled_evenly(strategy) && self.emitter().samples_from(slots, from, u, out)
+    }
+
+    /// The light as a ball that [`DiffuseAreaLight::sample`] samples as such, where it is one.
+    #[inline]
+    pub(super) fn ball(&self, strategy: LightStrategy) -> Option<&Ball> {
+        self.emitter().primitive().ball().filter(|_| self.is_sampled_evenly(strategy))
+    }
+
+    /// Whether it emits the same everywhere and is sampled by what is seen of it.
+    #[inline]
+    fn is_sampled_evenly(&self, strategy: LightStrategy) -> bool {
+        matches!(self.emission().radiance, AreaRadiance::Uniform(_))
+            && matches!(strategy, ByTexture | Complementary | SolidAngle)
     }
 
     /// The radiance of a surface that emits the same everywhere, on the side that emits.

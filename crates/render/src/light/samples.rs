@@ -1,8 +1,8 @@
 //! Light sampled for many points side by side.
 
 use super::lights::{Choice, Lights};
-use super::{Light, LightSample, LightStrategy, ShadowRay};
-use tenfold_geometry::{ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
+use super::{DiffuseAreaLight, Light, LightSample, LightStrategy, ShadowRay};
+use tenfold_geometry::{Balls, ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
 use tenfold_math::{Floats, Id, Rays, Slots, Vec2s, Vec3s, WIDTH, vectorized};
 use tenfold_spectrum::{SampledWavelengths, Spectra};
 
@@ -24,8 +24,9 @@ pub struct LightSamples {
     pub shadow: Rays,
     /// See [`ShadowRay::t_max`].
     pub t_max: Floats,
-    /// Room for points on lights.
+    /// Room for points on lights, and the lights that are balls.
     points: ShapeSamples,
+    balls: Balls,
 }
 
 impl LightSamples {
@@ -54,34 +55,32 @@ impl Lights {
         out: &mut LightSamples,
     ) -> Slots {
         let mut choices = [const { Choice { light: 0, pmf: 0.0 } }; WIDTH];
-        let mut left = Slots::NONE;
+        let (mut left, mut balls) = (Slots::NONE, Slots::NONE);
         for slot in slots {
             if let Some(choice) = self.choose(strategy, &from.get(slot), u_choice[slot]) {
+                if let Some(ball) = self.area(&choice).and_then(|area| area.ball(strategy)) {
+                    out.balls.set(slot, ball);
+                    balls.insert(slot);
+                }
                 choices[slot] = choice;
                 left.insert(slot);
             }
         }
         let mut lit = Slots::NONE;
+        if balls.len() >= WORTHWHILE {
+            let seen = out.balls.samples_from(balls, from, u, &mut out.points);
+            lit = self.arriving(seen, &choices, from, &wavelengths, out);
+            left = left.without(seen);
+        }
         while let Some(first) = left.into_iter().next() {
             let light = choices[first].light;
             let same = left.keep(|slot| choices[slot].light == light);
             left = left.without(same);
             if same.len() >= WORTHWHILE
-                && let Light::Area(area) = self.get(Id::new(light))
+                && let Some(area) = self.area(&choices[first])
                 && area.points_from(strategy, same, from, u, &mut out.points)
             {
-                let mut seen = [false; WIDTH];
-                same.for_each(|slot| seen[slot] = true);
-                aim(from, area.is_two_sided(), out, &mut seen);
-                for slot in same.keep(|slot| seen[slot]) {
-                    out.pdf[slot] = out.points.pdf[slot] * choices[slot].pmf;
-                    out.delta[slot] = area.is_invisible();
-                    let radiance = area.even_radiance(wavelengths(slot));
-                    out.radiance.set(slot, radiance);
-                    if out.pdf[slot] > 0.0 && !radiance.is_black() {
-                        lit.insert(slot);
-                    }
-                }
+                lit = lit.or(self.arriving(same, &choices, from, &wavelengths, out));
                 continue;
             }
             for slot in same {
@@ -96,11 +95,50 @@ impl Lights {
         }
         lit
     }
+
+    /// Light from the points that were sampled for `slots` on area lights that emit the same everywhere, and the slots for which there is any.
+    fn arriving<'w>(
+        &self,
+        slots: Slots,
+        choices: &[Choice; WIDTH],
+        from: &ReferencePoints,
+        wavelengths: impl Fn(usize) -> &'w SampledWavelengths,
+        out: &mut LightSamples,
+    ) -> Slots {
+        let (mut seen, mut two_sided) = ([false; WIDTH], [false; WIDTH]);
+        for slot in slots {
+            if let Some(area) = self.area(&choices[slot]) {
+                (seen[slot], two_sided[slot]) = (true, area.is_two_sided());
+            }
+        }
+        aim(from, &two_sided, out, &mut seen);
+        let mut lit = Slots::NONE;
+        for slot in slots.keep(|slot| seen[slot]) {
+            let Some(area) = self.area(&choices[slot]) else { continue };
+            out.pdf[slot] = out.points.pdf[slot] * choices[slot].pmf;
+            out.delta[slot] = area.is_invisible();
+            let radiance = area.even_radiance(wavelengths(slot));
+            out.radiance.set(slot, radiance);
+            if out.pdf[slot] > 0.0 && !radiance.is_black() {
+                lit.insert(slot);
+            }
+        }
+        lit
+    }
+
+    /// A light that was chosen, where it is an area light.
+    #[inline]
+    fn area(&self, choice: &Choice) -> Option<&DiffuseAreaLight> {
+        match self.get(Id::new(choice.light)) {
+            Light::Area(area) => Some(area),
+            _ => None,
+        }
+    }
 }
 
 vectorized! {
     /// Directions and shadow rays to points on a light, in the slots that are `seen`: it stays so where there is a point, and on a side that emits.
-    fn aim(from: &ReferencePoints, two_sided: bool, out: &mut LightSamples, seen: &mut [bool; WIDTH]) {
+    fn aim(from: &ReferencePoints, two_sided: &[bool; WIDTH], out: &mut LightSamples, seen: &mut [bool; WIDTH]) {
         for i in 0..WIDTH {
             let (start, start_error, start_n) = (from.p.get(i), from.p_error.get(i), from.n.get(i));
             let (end, end_error, end_n) = (out.points.p.get(i), out.points.p_error.get(i), out.points.n.get(i));
@@ -111,7 +149,7 @@ vectorized! {
             // Other slots may have light of other kinds already.
             let was_seen = seen[i];
             out.wi.set(i, if was_seen { wi } else { out.wi.get(i) });
-            let faces = two_sided | (end_n.dot(-wi) > 0.0);
+            let faces = two_sided[i] | (end_n.dot(-wi) > 0.0);
             seen[i] = was_seen & faces & (distance_squared != 0.0) & (out.points.pdf[i] > 0.0);
             out.shadow.set(i, if was_seen { shadow } else { out.shadow.get(i) });
             out.t_max[i] = if was_seen { SHADOW_T_MAX } else { out.t_max[i] };

@@ -1,7 +1,8 @@
 //! χ² of the directions of samples against the densities that paths compute.
 
 use super::*;
-use tenfold_math::Id;
+use tenfold_geometry::ReferencePoints;
+use tenfold_math::{Id, Slots, Vec2s, WIDTH};
 use tenfold_testkit::Options;
 use tenfold_testkit::chi2::sphere_test;
 
@@ -133,6 +134,44 @@ fn densities_agree_sample_by_sample() {
             assert!(off <= 6, "{}: {off} of 2000: {:?}", strategy.name(), lights.get(Id::new(0)));
         }
     }
+}
+
+#[test]
+fn points_side_by_side_see_what_each_sees_by_itself() {
+    let mut balls = area(sphere(Vec3::new(0.2, -0.1, 1.2), 0.4), 20.0, false);
+    balls.extend(area(sphere(Vec3::new(-0.5, 0.3, -0.9), 0.6), 1.0, true));
+    let mut all = balls.clone();
+    all.extend(area(patch(ceiling(), &[]), 3.0, false));
+    all.extend(area(disk(1.4, 0.6), 3.0, false));
+    all.push(textured(patch(ceiling(), &[])));
+    let mut rng = Rng::new(21);
+    let (mut out, mut counts) = (LightSamples::default(), [0; 2]);
+    for (lights, strategy) in [&balls[..1], &balls, &all[2..3], &all].into_iter().flat_map(|lights| {
+        let lights = Lights::build(lights.to_vec());
+        LightStrategy::ALL.map(|strategy| (lights.clone(), strategy))
+    }) {
+        for round in 0..50 {
+            let (mut from, mut u_choice, mut u) = (ReferencePoints::default(), [0.0; WIDTH], Vec2s::ZERO);
+            for slot in 0..WIDTH {
+                from.set(slot, references()[rng.below(3)]);
+                (u_choice[slot], _) = (rng.f32(), u.set(slot, rng.vec2()));
+            }
+            let (slots, w) = (Slots::first(round % (WIDTH + 1)), wavelengths());
+            let lit = lights.samples(strategy, slots, &from, &u_choice, &u, |_| &w, &mut out);
+            for slot in slots {
+                let point = from.get(slot);
+                let alone = lights.sample(strategy, &point, u_choice[slot], u.get(slot), &w);
+                counts[usize::from(lit.contains(slot))] += 1;
+                assert_eq!(lit.contains(slot), alone.is_some());
+                let Some(alone) = alone else { continue };
+                let shadow = alone.shadow_ray(&point);
+                assert_eq!((out.shadow.get(slot), out.t_max[slot]), (shadow.ray, shadow.t_max));
+                assert_eq!((out.wi.get(slot), out.pdf[slot]), (alone.wi, alone.pdf));
+                assert_eq!((out.radiance.get(slot), out.delta[slot]), (alone.radiance, alone.delta));
+            }
+        }
+    }
+    assert!(counts[0] > 100 && counts[1] > 1000, "{counts:?}");
 }
 
 #[test]
