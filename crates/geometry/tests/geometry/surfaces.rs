@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use std::sync::Arc;
 use tenfold_geometry::*;
 use tenfold_math::ops;
-use tenfold_math::{Id, Motion, Ray, Transform, Vec2, Vec3};
+use tenfold_math::{Id, Motion, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH};
 use tenfold_testkit::Rng;
 
 /// Values at the corners of `p ± error` of a function that vanishes on the surface: whether they have both signs.
@@ -450,4 +450,49 @@ fn parallelograms_are_hit_where_they_are() {
             }
         }
     }
+}
+
+/// What is told of flat triangles side by side is what is told of each alone, to the bit; of all else nothing is.
+#[test]
+fn flat_surfaces_are_those_of_interactions() {
+    let mut rng = Rng::new(31);
+    let (mut flat, mut others) = (0, 0);
+    for round in 0..60 {
+        let (kind, reverse) = (round % 4, round % 2 == 0);
+        let parts = MeshParts {
+            positions: (0..9).map(|_| in_box(&mut rng, 1.0)).collect(),
+            indices: (0..9).collect(),
+            uvs: (kind == 2).then(|| (0..9).map(|_| rng.vec2()).collect()),
+            normals: (kind == 3).then(|| (0..9).map(|_| rng.direction()).collect()),
+            face_indices: Some(vec![7, 8, 9]),
+            ..MeshParts::default()
+        };
+        let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, reverse).unwrap();
+        let geometries = vec![still(Shape::Triangles(Arc::new(mesh)), 0)];
+        let world = World::build(WorldDesc { geometries, ..WorldDesc::default() }).unwrap();
+        let mut rays = Rays::default();
+        for slot in 0..WIDTH {
+            let (origin, target) = (3.0 * rng.direction(), in_box(&mut rng, 0.3));
+            let direction = if slot % 2 == 0 { target - origin } else { (target - origin).normalize() };
+            rays.set(slot, Ray::new(origin, direction, 0.0));
+        }
+        let hits = std::array::from_fn(|slot| world.intersect(&rays.get(slot), f32::INFINITY, |_| true));
+        let mut surfaces = FlatSurfaces::default();
+        let found = world.flat_surfaces(Slots::first(WIDTH), &rays, &hits, &mut surfaces);
+        for slot in 0..WIDTH {
+            assert_eq!(found.contains(slot), kind < 2 && hits[slot].is_some());
+            let Some(hit) = &hits[slot] else { continue };
+            if kind >= 2 {
+                others += 1;
+                continue;
+            }
+            flat += 1;
+            let alone = world.interaction(&rays.get(slot), hit);
+            assert_eq!((surfaces.p.get(slot), surfaces.p_error.get(slot)), (alone.p, alone.p_error));
+            assert_eq!((surfaces.n.get(slot), surfaces.n.get(slot)), (alone.n, alone.shading.n));
+            assert_eq!((surfaces.uv.get(slot), surfaces.dpdu.get(slot)), (alone.uv, alone.shading.dpdu));
+            assert_eq!((surfaces.wo.get(slot), surfaces.face_index[slot]), (alone.wo, alone.face_index));
+        }
+    }
+    assert!(flat > 100 && others > 100, "{flat} {others}");
 }

@@ -15,8 +15,8 @@ use crate::{
 use tenfold_geometry::{
     Candidate, FlatSurfaces, Hit, PrimitiveId, RayCourses, ReferencePoint, SurfaceInteraction,
 };
-use tenfold_math::{Frame, Id, Ray, Rays, Slots, Vec2s, Vec3, WIDTH};
-use tenfold_sampling::{Dimension, PixelSample, Variable, hash};
+use tenfold_math::{Frame, Id, Ray, Rays, Slots, Vec3, WIDTH};
+use tenfold_sampling::{Dimension, PixelSample, SampleGroup, Variable, hash};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths, Spectra};
 
 /// Passing through this many interfaces ends a path: a bound for scenes with interfaces without end.
@@ -106,13 +106,19 @@ impl<'a> PathTracer<'a> {
 
     /// Estimates the radiance of `samples`, at most [`WIDTH`], with their `rays` from the camera in the first slots, by paths that take each step
     /// together. The estimate of each is the same, whichever others are with it.
-    pub fn trace(&self, rays: &Rays, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
+    pub fn trace(
+        &self,
+        group: &SampleGroup<'_>,
+        rays: &Rays,
+        samples: &mut [Sample<'_>],
+        workspace: &mut Workspace<'a>,
+    ) {
         let mut live = workspace.wave.start(samples.len(), rays);
         loop {
             while !live.is_empty() {
                 let vertices = self.go_on(live, samples, workspace);
-                self.add_direct(&vertices, samples, workspace);
-                live = self.scatter(&vertices, samples, workspace);
+                self.add_direct(&vertices, group, samples, workspace);
+                live = self.scatter(&vertices, group, samples, workspace);
             }
             let Some(waiting) = workspace.pending.pop() else { return };
             live = workspace.wave.resume(waiting);
@@ -390,7 +396,13 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Light from points sampled on lights.
-    fn add_direct(&self, vertices: &Vertices, samples: &mut [Sample<'_>], workspace: &mut Workspace<'a>) {
+    fn add_direct(
+        &self,
+        vertices: &Vertices,
+        group: &SampleGroup<'_>,
+        samples: &mut [Sample<'_>],
+        workspace: &mut Workspace<'a>,
+    ) {
         let Strategies { light: strategy, combine, .. } = self.strategies;
         let Workspace { wave, lights: light, courses, scattering, arriving, rays, .. } = workspace;
         let scene_lights = &self.scene.lights;
@@ -399,15 +411,11 @@ impl<'a> PathTracer<'a> {
         if count == 0 || seeing.is_empty() {
             return;
         }
-        let (mut u_choice, mut u) = ([0.0; WIDTH], Vec2s::ZERO);
-        for slot in seeing {
-            let path = &wave.paths[slot];
-            let sampler = samples[path.sample].sampler;
-            if count > 1 {
-                u_choice[slot] = sampler.get_1d(Dimension::light_choice(path.bounce));
-            }
-            u.set(slot, sampler.get_2d(Dimension::light_point(path.bounce)));
-        }
+        let u_choice = match count {
+            1 => [0.0; WIDTH],
+            _ => wave.numbers_1d(group, seeing, Dimension::light_choice),
+        };
+        let u = wave.numbers_2d(group, seeing, Dimension::light_point);
         let wavelengths = |slot: usize| &samples[wave.paths[slot].sample].wavelengths;
         let lit = scene_lights.samples(strategy, seeing, &wave.from, &u_choice, &u, wavelengths, light);
         if lit.is_empty() {
@@ -440,14 +448,16 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Sends the paths on; the slots of those that go on.
-    fn scatter(&self, vertices: &Vertices, samples: &[Sample<'_>], workspace: &mut Workspace<'a>) -> Slots {
+    fn scatter(
+        &self,
+        vertices: &Vertices,
+        group: &SampleGroup<'_>,
+        samples: &[Sample<'_>],
+        workspace: &mut Workspace<'a>,
+    ) -> Slots {
         let Workspace { wave, scattering, pending, .. } = workspace;
         if !vertices.even.is_empty() {
-            let mut u = Vec2s::ZERO;
-            for slot in vertices.even {
-                let path = &wave.paths[slot];
-                u.set(slot, samples[path.sample].sampler.get_2d(Dimension::scatter_direction(path.bounce)));
-            }
+            let u = wave.numbers_2d(group, vertices.even, Dimension::scatter_direction);
             even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut wave.rays, scattering);
         }
         let mut scattered = vertices.even.keep(|slot| scattering.hero_pdf[slot] > 0.0);

@@ -6,7 +6,8 @@ use super::{
 };
 use crate::bxdf::Bsdf;
 use tenfold_geometry::{ReferencePoint, ReferencePoints};
-use tenfold_math::{Rays, Slots, Vec3, Vec3s, WIDTH};
+use tenfold_math::{Floats, Rays, Slots, Vec2s, Vec3, Vec3s, WIDTH};
+use tenfold_sampling::{Dimension, SampleGroup};
 use tenfold_spectrum::{SampledSpectrum, Spectra};
 
 /// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
@@ -14,6 +15,8 @@ use tenfold_spectrum::{SampledSpectrum, Spectra};
 #[derive(Debug)]
 pub(super) struct Wave<'a> {
     pub(super) paths: [Path; WIDTH],
+    /// Whether every path is in the slot of its sample and all have come equally far.
+    in_step: bool,
     pub(super) weights: WaveWeights,
     /// Where the paths go next.
     pub(super) rays: Rays,
@@ -28,7 +31,7 @@ pub(super) struct Wave<'a> {
 }
 
 /// Surfaces that reflect the same radiance in all directions.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct EvenReflectors {
     /// Unit shading normals.
     pub(super) n: Vec3s,
@@ -54,11 +57,12 @@ impl Default for Wave<'_> {
     fn default() -> Self {
         Self {
             paths: [Path::from_camera(0); WIDTH],
+            in_step: true,
             weights: WaveWeights::default(),
             rays: Rays::default(),
             from: ReferencePoints::default(),
             wo: Vec3s::ZERO,
-            even: EvenReflectors { n: Vec3s::ZERO, tangent: Vec3s::ZERO, reflectance: Spectra::ZERO },
+            even: EvenReflectors::default(),
             bsdfs: [const { None }; WIDTH],
         }
     }
@@ -71,16 +75,60 @@ impl Wave<'_> {
         (0..count).for_each(|slot| self.paths[slot] = Path::from_camera(slot));
         (0..WIDTH).for_each(|slot| self.weights.set(slot, &Weights::ONE, &Lanes::ALL));
         self.rays = *rays;
+        self.in_step = true;
         Slots::first(count)
     }
 
     /// Puts a path that has waited into the first slot.
     pub(super) fn resume(&mut self, waiting: Waiting) -> Slots {
+        self.in_step = false;
         self.paths[0] = waiting.path;
         self.weights.set(0, &waiting.weights, &waiting.path.lanes);
         self.rays.set(0, waiting.ray);
         self.from.set(0, waiting.from);
         Slots::first(1)
+    }
+
+    /// The number of a dimension at the vertices where paths are, for those in `slots`.
+    #[inline]
+    pub(super) fn numbers_1d(
+        &self,
+        group: &SampleGroup<'_>,
+        slots: Slots,
+        dimension: impl Fn(u16) -> Dimension,
+    ) -> Floats {
+        match { slots }.next() {
+            Some(first) if self.in_step => group.get_1d(slots, dimension(self.paths[first].bounce)),
+            _ => {
+                let mut numbers = [0.0; WIDTH];
+                for slot in slots {
+                    let Path { sample, bounce, .. } = self.paths[slot];
+                    numbers[slot] = group[sample].get_1d(dimension(bounce));
+                }
+                numbers
+            }
+        }
+    }
+
+    /// Both numbers of a dimension at the vertices where paths are, for those in `slots`.
+    #[inline]
+    pub(super) fn numbers_2d(
+        &self,
+        group: &SampleGroup<'_>,
+        slots: Slots,
+        dimension: impl Fn(u16) -> Dimension,
+    ) -> Vec2s {
+        match { slots }.next() {
+            Some(first) if self.in_step => group.get_2d(slots, dimension(self.paths[first].bounce)),
+            _ => {
+                let mut numbers = Vec2s::ZERO;
+                for slot in slots {
+                    let Path { sample, bounce, .. } = self.paths[slot];
+                    numbers.set(slot, group[sample].get_2d(dimension(bounce)));
+                }
+                numbers
+            }
+        }
     }
 
     /// [`Path::carried`] of the path in a slot.

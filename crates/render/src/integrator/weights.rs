@@ -220,3 +220,93 @@ vectorized! {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenfold_testkit::Rng;
+
+    fn spectrum(rng: &mut Rng) -> SampledSpectrum {
+        // Black now and then.
+        SampledSpectrum::from_fn(|_| if rng.below(8) == 0 { 0.0 } else { rng.f32() })
+    }
+
+    /// Paths of all, some and single lanes, and what they scatter.
+    fn paths(rng: &mut Rng) -> ([(Weights, Lanes); WIDTH], WaveWeights, Scattering) {
+        let (mut wave, mut scattering) = (WaveWeights::default(), Scattering::default());
+        let paths = std::array::from_fn(|slot| {
+            let lanes = [Lanes::ALL, Lanes::subset(0b0110, 0.7), Lanes::one(3)][slot % 3];
+            let mask = lanes.mask();
+            let weights = Weights {
+                beta: spectrum(rng) * mask,
+                ratio: (spectrum(rng) + SampledSpectrum::splat(0.1)) * mask,
+                light_ratio: SampledSpectrum::ZERO,
+                eta_scale: 0.5 + rng.f32(),
+            };
+            wave.set(slot, &weights, &lanes);
+            let pdf = spectrum(rng) + SampledSpectrum::splat(0.05);
+            scattering.set(slot, spectrum(rng), pdf, lanes.hero(), rng.f32());
+            (weights, lanes)
+        });
+        (paths, wave, scattering)
+    }
+
+    #[test]
+    fn slots_advance_as_paths_do_by_themselves() {
+        let mut rng = Rng::new(11);
+        for _ in 0..200 {
+            let (paths, mut wave, scattering) = paths(&mut rng);
+            let mut carried = [0.0; WIDTH];
+            advance(&mut wave, &scattering, &mut carried);
+            for (slot, (mut alone, lanes)) in paths.into_iter().enumerate() {
+                let (f, pdf) = (scattering.f.get(slot), scattering.pdf.get(slot));
+                alone.advance(f, pdf, pdf.lane(lanes.hero()), scattering.cos[slot]);
+                let found = wave.get(slot);
+                assert_eq!((found.beta, found.ratio), (alone.beta, alone.ratio));
+                assert_eq!((found.light_ratio, found.eta_scale), (alone.light_ratio, alone.eta_scale));
+                assert_eq!(carried[slot], alone.carried(&lanes));
+            }
+        }
+    }
+
+    /// Sampled light has the weight of the power heuristic against scattered directions, all of it alone, and none where the latter count alone;
+    /// light that these do not find has all of it always.
+    #[test]
+    fn sampled_light_has_the_weight_of_its_strategy() {
+        let mut rng = Rng::new(12);
+        for _ in 0..200 {
+            let (paths, wave, scattering) = paths(&mut rng);
+            let mut light = LightSamples::default();
+            (0..WIDTH).for_each(|slot| light.radiance.set(slot, spectrum(&mut rng)));
+            light.pdf = std::array::from_fn(|_| 0.05 + rng.f32());
+            light.delta = std::array::from_fn(|_| rng.below(4) == 0);
+            let parts = std::array::from_fn(|_| rng.below(4) == 0);
+            let weighed = |combine: CombineStrategy| {
+                let mut out = Spectra::ZERO;
+                weigh_sampled(combine, &wave, &scattering, &light, &parts, &mut out);
+                out
+            };
+            let (both, sampled) = (weighed(CombineStrategy::Mis), weighed(CombineStrategy::LightOnly));
+            let scattered = weighed(CombineStrategy::BsdfOnly);
+            for (slot, (weights, lanes)) in paths.into_iter().enumerate() {
+                if light.delta[slot] {
+                    assert_eq!(both.get(slot), sampled.get(slot));
+                    assert_eq!(scattered.get(slot), sampled.get(slot));
+                    continue;
+                }
+                assert!(scattered.get(slot).is_black());
+                let by_light = weights.ratio * light.pdf[slot];
+                let by_scattering = weights.ratio * scattering.pdf.get(slot);
+                let carried = weights.beta * scattering.f.get(slot) * light.radiance.get(slot);
+                for lane in (0..N).filter(|&lane| lanes.carries(lane)) {
+                    let of = |x: SampledSpectrum| if parts[slot] { x.lane(lane) } else { lanes.mean(x) };
+                    let (a, b) = (of(by_light), of(by_scattering));
+                    let alone = carried.lane(lane) * scattering.cos[slot] / a;
+                    let near = |x: f32, y: f32| (x - y).abs() <= 1e-5 * y.abs();
+                    assert!(near(sampled.get(slot).lane(lane), alone));
+                    assert!(near(both.get(slot).lane(lane), alone * a * a / (a * a + b * b)));
+                }
+            }
+        }
+    }
+}

@@ -56,7 +56,7 @@ impl<'a> PixelEstimator<'a> {
         for (sampler, wavelengths) in group.iter().zip(&wavelengths) {
             samples.push(Sample::new(sampler, *wavelengths));
         }
-        self.tracer.trace(&rays, &mut samples, workspace);
+        self.tracer.trace(group, &rays, &mut samples, workspace);
         let mut xyz = Vec3s::ZERO;
         for (slot, sample) in samples.iter().enumerate() {
             xyz.set(slot, scene.film.sensor.xyz(sample.radiance, &sample.wavelengths));

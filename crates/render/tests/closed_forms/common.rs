@@ -9,7 +9,7 @@ use tenfold_render::film::Film;
 use tenfold_render::integrator::{DispersionRule, PathTracer, Sample, Strategies, Workspace};
 use tenfold_render::scene::Scene;
 use tenfold_render::schedule::{PixelEstimator, RenderSettings, render};
-use tenfold_sampling::{Sampler, SamplerKind};
+use tenfold_sampling::{SampleGroup, Sampler, SamplerKind};
 use tenfold_scene::{Resources, SourceMap, read_pbrt_str};
 use tenfold_spectrum::{N, SampledSpectrum, SampledWavelengths};
 use tenfold_testkit::Welford;
@@ -112,7 +112,7 @@ pub(crate) fn radiance(
 pub(crate) fn traced(tracer: &PathTracer<'_>, ray: Ray, sample: Sample<'_>) -> SampledSpectrum {
     let (mut rays, mut samples) = (Rays::default(), [sample]);
     rays.set(0, ray);
-    tracer.trace(&rays, &mut samples, &mut Workspace::default());
+    tracer.trace(&SampleGroup::from(*sample.sampler), &rays, &mut samples, &mut Workspace::default());
     samples[0].radiance
 }
 

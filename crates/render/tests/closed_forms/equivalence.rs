@@ -5,7 +5,9 @@ use super::common::film;
 use std::num::NonZeroUsize;
 use tenfold_math::UVec2;
 use tenfold_render::film::{Film, PixelBounds};
-use tenfold_render::schedule::TileOrder;
+use tenfold_render::integrator::Workspace;
+use tenfold_render::schedule::{PixelEstimator, RenderSettings, TileOrder};
+use tenfold_sampling::{SampleRoom, Sampler};
 
 /// More samples than one piece of work takes.
 const SPP: u32 = 70;
@@ -49,5 +51,26 @@ fn parts_make_up_the_whole() {
         let alone = part(pixel, pixel.map(|c| c + 1));
         let pixel = UVec2::from_array(pixel);
         assert_eq!(alone.pixel(pixel), whole.pixel(pixel));
+    }
+}
+
+/// Whichever samples are traced together, each is what it is alone.
+#[test]
+fn company_does_not_matter() {
+    let scene = everything();
+    let settings = RenderSettings { spp: SPP, ..RenderSettings::of(&scene) };
+    let estimator = PixelEstimator::new(&scene, &settings);
+    let sampler = Sampler::new(settings.sampling, SPP, 3);
+    let (mut room, mut workspace) = (SampleRoom::default(), Workspace::default());
+    for pixel in scene.film.bounds.pixels().step_by(7) {
+        for indices in [0..SPP, 5..12, 30..31] {
+            sampler.for_groups(pixel, indices, &mut room, |group| {
+                let together = estimator.samples(group, &mut workspace);
+                for (slot, sample) in group.iter().enumerate() {
+                    let alone = estimator.sample(&sampler.at(pixel, sample.index()), &mut workspace);
+                    assert_eq!(together.get(slot), alone, "{pixel}, sample {}", sample.index());
+                }
+            });
+        }
     }
 }
