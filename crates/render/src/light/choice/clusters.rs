@@ -2,7 +2,7 @@
 
 use super::bounds::LightBounds;
 use tenfold_geometry::ReferencePoint;
-use tenfold_math::Vec3;
+use tenfold_math::{Vec3, vectorized};
 
 /// How many clusters are weighed together.
 pub(super) const LANES: usize = 8;
@@ -117,25 +117,13 @@ impl Clusters {
     /// finite inside of a cluster: the distance counts as the radius of the cluster at least.
     #[inline]
     pub(super) fn importance(&self, from: &ReferencePoint) -> [f32; LANES] {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine has AVX2.
-            return unsafe { self.importance_avx2(from) };
-        }
-        self.importance_portable(from)
+        importance(self, from)
     }
 
-    /// The same operations in wider registers: the same bits.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn importance_avx2(&self, from: &ReferencePoint) -> [f32; LANES] {
-        self.importance_portable(from)
-    }
-
-    // One index for all arrays; and unlike `clamp`, `max` turns what is not a number into 0.
-    #[allow(clippy::needless_range_loop, clippy::manual_clamp)]
+    // Unlike `clamp`, `max` turns what is not a number into 0.
+    #[allow(clippy::manual_clamp)]
     #[inline(always)]
-    fn importance_portable(&self, from: &ReferencePoint) -> [f32; LANES] {
+    fn importance_in_lanes(&self, from: &ReferencePoint) -> [f32; LANES] {
         let (p, n) = (from.p, from.ns);
         let (on_surface, one_sided) = (n != Vec3::ZERO, from.one_sided);
         let mut importance = [0.0; LANES];
@@ -174,6 +162,14 @@ impl Clusters {
             importance[i] = if reached { value.max(0.0).min(MAX_IMPORTANCE) } else { 0.0 };
         }
         importance
+    }
+}
+
+vectorized! {
+    /// [`Clusters::importance`].
+    #[inline]
+    fn importance(clusters: &Clusters, from: &ReferencePoint) -> [f32; LANES] {
+        clusters.importance_in_lanes(from)
     }
 }
 
@@ -256,12 +252,8 @@ mod tests {
         }
     }
 
-    #[cfg(target_arch = "x86_64")]
     #[test]
     fn all_instructions_give_the_same_bits() {
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            return;
-        }
         let lamps: Vec<_> =
             (0..5).map(|i| lamp(Vec3::new(i as f32, 0.3, 0.1 * i as f32), 1.0 + i as f32)).collect();
         let clusters = Clusters::new(&lamps);
@@ -269,9 +261,8 @@ mod tests {
             let p = Vec3::new(0.01 * i as f32 - 3.0, 0.2, 0.001 * (i % 70) as f32);
             let ns = [Vec3::ZERO, Vec3::Z, Vec3::new(0.6, 0.0, -0.8)][i % 3];
             let from = ReferencePoint { ns, one_sided: i % 2 == 0, ..ReferencePoint::free(p, 0.0) };
-            // SAFETY: checked above.
-            let wide = unsafe { clusters.importance_avx2(&from) };
-            assert_eq!(wide.map(f32::to_bits), clusters.importance_portable(&from).map(f32::to_bits));
+            let (wide, portable) = (clusters.importance(&from), clusters.importance_in_lanes(&from));
+            assert_eq!(wide.map(f32::to_bits), portable.map(f32::to_bits));
         }
     }
 }
