@@ -210,6 +210,12 @@ impl<const N: usize> Mesh<N> {
         self.at_corners(primitive, &self.parts.positions)
     }
 
+    /// Vertex positions of a primitive, where they lie beside each other.
+    #[inline]
+    pub(crate) fn separate_positions(&self, primitive: usize) -> Option<&[Vec3; N]> {
+        if self.is_separate { self.parts.positions[N * primitive..].first_chunk() } else { None }
+    }
+
     /// Vertex normals of a primitive, of any length.
     #[inline]
     pub fn normals(&self, primitive: usize) -> Option<[Vec3; N]> {

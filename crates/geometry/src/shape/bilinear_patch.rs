@@ -21,9 +21,12 @@ impl<'a> BilinearPatch<'a> {
     }
 
     /// Vertex positions.
-    #[inline]
+    #[inline(always)]
     pub fn positions(&self) -> [Vec3; 4] {
-        self.mesh.positions(self.index)
+        match self.mesh.separate_positions(self.index) {
+            Some(positions) => *positions,
+            None => self.mesh.positions(self.index),
+        }
     }
 
     pub(super) fn bounds(&self) -> Bounds3 {
@@ -88,8 +91,6 @@ impl<'a> BilinearPatch<'a> {
         area as f32
     }
 
-    /// Reshetov (2019), "Cool Patches": the ray meets the line at `u` where `((a(u) − o) × d) · (b(u) − a(u)) = 0`, a
-    /// quadratic equation; in double precision, so that neighbours leave no gap that a float could find.
     #[inline]
     pub(super) fn intersect(
         &self,
@@ -99,50 +100,16 @@ impl<'a> BilinearPatch<'a> {
     ) -> Option<ShapeHit> {
         let corners = self.positions();
         let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
+        if p01 - p00 != p11 - p10 {
+            return intersect_twisted(&corners, ray, t_max, &mut accept);
+        }
+        // A parallelogram: Cramer's rule for p00 + u · across + v · e00 = o + t · d.
         let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-        let (e00, e11) = (p01 - p00, p11 - p10);
-        // Nearer than rounding can tell from the origin's own surface.
-        let t_min = || {
-            let size = corners.iter().fold(ray.origin.abs(), |m, p| m.max(p.abs())).max_element();
-            1e-13 * f64::from(size) / d.length()
-        };
-        let hit_at = |t: f64, u: f64, v: f64| {
-            let inside = |x: f64| (-SLACK..=1.0 + SLACK).contains(&x);
-            let is_hit = inside(u) && inside(v) && t > 0.0 && (t as f32) < t_max && t > t_min();
-            let clamped = |x: f64| (x as f32).clamp(0.0, 1.0);
-            is_hit.then(|| ShapeHit { t: t as f32, u: clamped(u), v: clamped(v) })
-        };
-        if e00 == e11 {
-            // A parallelogram: Cramer's rule for p00 + u · across + v · e00 = o + t · d.
-            let (across, from) = (p10 - p00, o - p00);
-            let (n, q) = (across.cross(e00), from.cross(d));
-            let scale = 1.0 / d.dot(n);
-            let hit = hit_at(-from.dot(n) * scale, -e00.dot(q) * scale, across.dot(q) * scale);
-            return hit.filter(|hit| accept(*hit));
-        }
-        let a = (p10 - p00).cross(d).dot(e11 - e00);
-        let c = (p00 - o).cross(d).dot(e00);
-        let b = (p10 - o).cross(d).dot(e11) - (a + c);
-        let hit = |u: f64| {
-            // Also leaves out NaN.
-            if !(-SLACK..=1.0 + SLACK).contains(&u) {
-                return None;
-            }
-            let start = p00 + u * (p10 - p00);
-            let across = p01 + u * (p11 - p01) - start;
-            let delta = start - o;
-            let perpendicular = d.cross(across);
-            let scale = 1.0 / perpendicular.length_squared();
-            let v = delta.cross(d).dot(perpendicular) * scale;
-            hit_at(delta.cross(across).dot(perpendicular) * scale, u, v)
-        };
-        let mut hits = quadratic_roots(a, b, c).map(hit);
-        if let [Some(first), Some(second)] = hits
-            && second.t < first.t
-        {
-            hits.swap(0, 1);
-        }
-        hits.into_iter().flatten().find(|hit| accept(*hit))
+        let (e00, across, from) = (p01 - p00, p10 - p00, o - p00);
+        let (n, q) = (across.cross(e00), from.cross(d));
+        let scale = 1.0 / d.dot(n);
+        let hit = [-from.dot(n) * scale, -e00.dot(q) * scale, across.dot(q) * scale];
+        hit_at(hit, &corners, ray, t_max).filter(|hit| accept(*hit))
     }
 
     pub(super) fn uv(&self, _: &Ray, hit: &ShapeHit) -> Vec2 {
@@ -283,6 +250,57 @@ fn normal_derivatives([dpdu, dpdv]: [Vec3A; 2], twist: f32) -> [Vec3A; 2] {
     }
     let s = twist / determinant;
     [(uv * s) * dpdu - (uu * s) * dpdv, (uv * s) * dpdv - (vv * s) * dpdu]
+}
+
+/// The hit with the parameters `t`, `u` and `v`, where it is one.
+#[inline(always)]
+fn hit_at([t, u, v]: [f64; 3], corners: &[Vec3; 4], ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    let inside = |x: f64| (-SLACK..=1.0 + SLACK).contains(&x);
+    // Nearer than rounding can tell from the origin's own surface.
+    let t_min = || {
+        let size = corners.iter().fold(ray.origin.abs(), |m, p| m.max(p.abs())).max_element();
+        1e-13 * f64::from(size) / ray.direction.as_dvec3().length()
+    };
+    let is_hit = inside(u) && inside(v) && t > 0.0 && (t as f32) < t_max && t > t_min();
+    let clamped = |x: f64| (x as f32).clamp(0.0, 1.0);
+    is_hit.then(|| ShapeHit { t: t as f32, u: clamped(u), v: clamped(v) })
+}
+
+/// Reshetov (2019), "Cool Patches": the ray meets the line at `u` where `((a(u) − o) × d) · (b(u) − a(u)) = 0`, a
+/// quadratic equation; in double precision, so that neighbours leave no gap that a float could find.
+#[inline(never)]
+fn intersect_twisted(
+    corners: &[Vec3; 4],
+    ray: &Ray,
+    t_max: f32,
+    accept: &mut impl FnMut(ShapeHit) -> bool,
+) -> Option<ShapeHit> {
+    let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
+    let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let (e00, e11) = (p01 - p00, p11 - p10);
+    let a = (p10 - p00).cross(d).dot(e11 - e00);
+    let c = (p00 - o).cross(d).dot(e00);
+    let b = (p10 - o).cross(d).dot(e11) - (a + c);
+    let hit = |u: f64| {
+        // Also leaves out NaN.
+        if !(-SLACK..=1.0 + SLACK).contains(&u) {
+            return None;
+        }
+        let start = p00 + u * (p10 - p00);
+        let across = p01 + u * (p11 - p01) - start;
+        let delta = start - o;
+        let perpendicular = d.cross(across);
+        let scale = 1.0 / perpendicular.length_squared();
+        let v = delta.cross(d).dot(perpendicular) * scale;
+        hit_at([delta.cross(across).dot(perpendicular) * scale, u, v], corners, ray, t_max)
+    };
+    let mut hits = quadratic_roots(a, b, c).map(hit);
+    if let [Some(first), Some(second)] = hits
+        && second.t < first.t
+    {
+        hits.swap(0, 1);
+    }
+    hits.into_iter().flatten().find(|hit| accept(*hit))
 }
 
 /// How far outside [0, 1] a parameter still counts as inside: the rounding of double precision.

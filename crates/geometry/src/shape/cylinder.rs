@@ -114,7 +114,8 @@ impl Cylinder {
         let object = self.placement.ray(ray);
         let flat = |v: DVec3| DVec3::new(v.x, v.y, 0.0);
         let CylinderParams { radius, z_min, z_max, phi_max } = self.params;
-        let roots = roots(flat(object.o), flat(object.d), object.o_error, f64::from(radius))?;
+        let (o, d) = (flat(object.o), flat(object.d));
+        let roots = roots(o, d, o.abs().dot(object.o_error), f64::from(radius))?;
         let is_cut_away = |t| {
             let z = object.at(t).z as f32;
             z < z_min || z > z_max || (phi_max < TAU && self.surface(&object, t).1 > phi_max)

@@ -111,15 +111,25 @@ pub(super) fn azimuth(p: Vec3) -> f32 {
     if phi < 0.0 { phi + TAU } else { phi }
 }
 
-/// Roots of a quadric along a ray, and from where on they count as in front of the origin.
+/// Roots of a quadric along a ray.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Roots {
-    pub(super) t: [f64; 2],
-    /// A root up to here may be the origin's own surface.
-    pub(super) t_error: f64,
+    t: [f64; 2],
+    /// |d|².
+    a: f64,
+    /// Bound on the error of |o|² − r².
+    shift: f64,
 }
 
 impl Roots {
+    /// Whether a positive root may be the origin's own surface: the `shift` of |o|² − r² moves it by √(shift/a) near a double root, elsewhere by
+    /// shift / (a · distance of the roots).
+    #[inline]
+    fn may_be_origin(&self, t: f64) -> bool {
+        let Self { t: [near, far], a, shift } = *self;
+        a * t * t <= shift && a * (far - near) * t <= shift
+    }
+
     /// The first hit with `0 < t < t_max` that is not cut away and that `accept` takes.
     #[inline]
     pub(super) fn first_hit(
@@ -130,7 +140,7 @@ impl Roots {
     ) -> Option<ShapeHit> {
         self.t.into_iter().find_map(|t| {
             let hit = ShapeHit { t: t as f32, u: 0.0, v: 0.0 };
-            if t <= self.t_error || !(hit.t < t_max) || is_cut_away(t) {
+            if !(t > 0.0 && hit.t < t_max) || self.may_be_origin(t) || is_cut_away(t) {
                 return None;
             }
             accept(hit).then_some(hit)
@@ -138,8 +148,9 @@ impl Roots {
     }
 }
 
-/// Roots of `|o + t·d|² = r²`, where `o` is known within `o_error` (leave out z for a cylinder by setting it to 0).
-pub(super) fn roots(o: DVec3, d: DVec3, o_error: DVec3, r: f64) -> Option<Roots> {
+/// Roots of `|o + t·d|² = r²`, where |o|² is known within twice `half_shift` (leave out z for a cylinder by setting it to 0).
+#[inline]
+pub(super) fn roots(o: DVec3, d: DVec3, half_shift: f64, r: f64) -> Option<Roots> {
     let a = d.length_squared();
     if !(a > 0.0) {
         return None;
@@ -153,11 +164,8 @@ pub(super) fn roots(o: DVec3, d: DVec3, o_error: DVec3, r: f64) -> Option<Roots>
         return None;
     }
     let half = (discriminant / a).sqrt();
-    // |o|² − r² is off by `shift` at most: near a double root t then moves by √(shift/a), elsewhere by
-    // shift / (2·a·half).
-    let shift = 2.0 * (o.abs().dot(o_error) + r * r * f64::from(f32::EPSILON));
-    let t_error = (shift / a).sqrt().min(shift / (2.0 * a * half));
-    Some(Roots { t: [to_closest - half, to_closest + half], t_error })
+    let shift = 2.0 * (half_shift + r * r * f64::from(f32::EPSILON));
+    Some(Roots { t: [to_closest - half, to_closest + half], a, shift })
 }
 
 /// Nodes and weights of Gauss's quadrature with four points on [0, 1].

@@ -182,11 +182,12 @@ impl Sphere {
         accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
         if let Some(ball) = &self.round {
-            let ObjectRay { o, d, o_error } = ball.ray(ray);
-            return roots(o, d, o_error, f64::from(ball.radius))?.first_hit(t_max, |_| false, accept);
+            let ObjectRay { o, d, .. } = ball.ray(ray);
+            return roots(o, d, 0.0, f64::from(ball.radius))?.first_hit(t_max, |_| false, accept);
         }
         let object = self.placement.ray(ray);
-        let roots = roots(object.o, object.d, object.o_error, f64::from(self.radius))?;
+        let half_shift = object.o.abs().dot(object.o_error);
+        let roots = roots(object.o, object.d, half_shift, f64::from(self.radius))?;
         let whole = self.phi_max == TAU && self.z_min == -self.radius && self.z_max == self.radius;
         let is_cut_away = |t| {
             !whole && {

@@ -54,6 +54,17 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Search<'_,
             })
     }
 
+    /// [`Search::accepts`] in few instructions for most hits.
+    #[inline(always)]
+    fn accepts_shape(&self, id: LeafPrimitive, hit: ShapeHit) -> bool {
+        (hit.t < self.state.t_max && !id.is_masked()) || self.accepts_rare(id, hit)
+    }
+
+    #[inline(never)]
+    fn accepts_rare(&self, id: LeafPrimitive, hit: ShapeHit) -> bool {
+        self.accepts(id, hit)
+    }
+
     #[inline(always)]
     fn take(&mut self, id: LeafPrimitive, hit: ShapeHit) {
         self.state = State { best: Some(self.hit(id, hit)), t_max: hit.t };
@@ -78,10 +89,10 @@ impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Visitor fo
     }
 
     fn shape(&mut self, id: LeafPrimitive) -> bool {
-        let primitive = self.world.geometries[id.geometry()].shape.primitive(id.index as usize);
         // Shapes look for hits below the limit.
         let limit = next_up(self.state.t_max);
-        let found = primitive.intersect(self.local, limit, |hit| self.accepts(id, hit));
+        let primitive = self.world.geometries[id.geometry()].shape.primitive(id.index as usize);
+        let found = primitive.intersect(self.local, limit, |hit| self.accepts_shape(id, hit));
         match found {
             Some(hit) => {
                 self.take(id, hit);
