@@ -1,10 +1,10 @@
 //! All lights of a scene.
 
-use super::choice::{Entry, LightTree, MAX_LIGHTS};
+use super::choice::{Entry, LightTree, MAX_LIGHTS, TreeSample};
 use super::far::FarIrradiance;
 use super::{Light, LightSample, LightStrategy, Role};
-use tenfold_geometry::{ReferencePoint, SurfaceInteraction};
-use tenfold_math::{Id, Vec2, Vec3};
+use tenfold_geometry::{ReferencePoint, ReferencePoints, SurfaceInteraction};
+use tenfold_math::{Floats, Id, Slots, Vec2, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// All lights of a scene: which of them to sample, and what a path finds by itself.
@@ -242,6 +242,28 @@ impl Lights {
         candidates
     }
 
+    /// [`Lights::choose`] for the points `from` in `slots`: `take` is called for those that find a light.
+    #[inline]
+    pub(super) fn choose_for(
+        &self,
+        strategy: LightStrategy,
+        slots: Slots,
+        from: &ReferencePoints,
+        u: &Floats,
+        mut take: impl FnMut(usize, Choice),
+    ) {
+        if self.far(strategy).is_empty() {
+            let of = |sample: TreeSample| Choice { light: sample.light as usize, pmf: sample.pmf };
+            return self.tree.samples(slots, from, u, |slot, sample| take(slot, of(sample)));
+        }
+        for slot in slots {
+            if let Some(choice) = self.choose(strategy, &from.get(slot), u[slot]) {
+                take(slot, choice);
+            }
+        }
+    }
+
+    /// A light for the point `from`, by `u` in `[0, 1)`.
     #[inline]
     pub(super) fn choose(
         &self,

@@ -56,16 +56,14 @@ impl Lights {
     ) -> Slots {
         let mut choices = [const { Choice { light: 0, pmf: 0.0 } }; WIDTH];
         let (mut left, mut balls) = (Slots::NONE, Slots::NONE);
-        for slot in slots {
-            if let Some(choice) = self.choose(strategy, &from.get(slot), u_choice[slot]) {
-                if let Some(ball) = self.area(&choice).and_then(|area| area.ball(strategy)) {
-                    out.balls.set(slot, ball);
-                    balls.insert(slot);
-                }
-                choices[slot] = choice;
-                left.insert(slot);
+        self.choose_for(strategy, slots, from, u_choice, |slot, choice| {
+            if let Some(ball) = self.area(&choice).and_then(|area| area.ball(strategy)) {
+                out.balls.set(slot, ball);
+                balls.insert(slot);
             }
-        }
+            choices[slot] = choice;
+            left.insert(slot);
+        });
         let mut lit = Slots::NONE;
         if balls.len() >= WORTHWHILE {
             let seen = out.balls.samples_from(balls, from, u, &mut out.points);

@@ -8,4 +8,4 @@ mod tree;
 
 pub use bounds::LightBounds;
 pub(crate) use tree::MAX_LIGHTS;
-pub(super) use tree::{Entry, LightTree};
+pub(super) use tree::{Entry, LightTree, TreeSample};

@@ -5,8 +5,8 @@
 use super::bounds::LightBounds;
 use super::clusters::{Clusters, LANES};
 use super::split::split;
-use tenfold_geometry::ReferencePoint;
-use tenfold_math::ONE_MINUS_EPSILON;
+use tenfold_geometry::{ReferencePoint, ReferencePoints};
+use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots};
 
 /// Depth from which groups are halved, so that no light is very deep.
 const HALVE_FROM: usize = 10;
@@ -55,6 +55,16 @@ pub(in crate::light) struct LightTree {
     len: usize,
     /// The light, where there is but one.
     only: Option<u32>,
+}
+
+/// A choice under way.
+#[derive(Copy, Clone, Debug)]
+struct Descent {
+    node: u32,
+    /// What is left of the number that chooses.
+    u: f32,
+    /// The probability of having come here.
+    pmf: f32,
 }
 
 /// A lane of a node.
@@ -132,33 +142,70 @@ impl LightTree {
 
     /// Draws a light by `u` in `[0, 1)`, for the point `from`. `None` where no light reaches it, or where the descent ends at lights that do not.
     #[inline]
-    pub(in crate::light) fn sample(&self, from: &ReferencePoint, mut u: f32) -> Option<TreeSample> {
+    pub(in crate::light) fn sample(&self, from: &ReferencePoint, u: f32) -> Option<TreeSample> {
         if let Some(light) = self.only {
             return Some(TreeSample { light, pmf: 1.0 });
         }
-        let mut node = self.nodes.first()?;
-        let mut pmf = 1.0;
+        let mut descent = Descent { node: 0, u, pmf: 1.0 };
         loop {
-            let weights = node.clusters.importance(from);
-            // How many lanes' sums, up to each, `x` is not below: without branches, which would go wrong as often as not.
-            let (mut sums, mut total) = ([0.0; LANES], 0.0);
-            for (sum, weight) in sums.iter_mut().zip(weights) {
-                total += weight;
-                *sum = total;
+            if let Some(sample) = self.descend(&mut descent, from)? {
+                return Some(sample);
             }
-            let x = u * total;
-            let below = sums.iter().filter(|&&sum| sum <= x).count();
-            // The last lane of positive weight takes what rounding leaves over.
-            let lane = if below < LANES { below } else { weights.iter().rposition(|&w| w > 0.0)? };
-            let weight = weights[lane];
-            pmf *= weight / total;
-            let link = node.links[lane];
-            if link & LIGHT != 0 {
-                return Some(TreeSample { light: link & !LIGHT, pmf });
-            }
-            u = ((x - (sums[lane] - weight)) / weight).clamp(0.0, ONE_MINUS_EPSILON);
-            node = &self.nodes[link as usize];
         }
+    }
+
+    /// [`LightTree::sample`] for the points `from` in `slots`, each by its `u`: `take` is called for those that find a light.
+    ///
+    /// All go down together, so that their nodes are loaded side by side.
+    #[inline]
+    pub(in crate::light) fn samples(
+        &self,
+        slots: Slots,
+        from: &ReferencePoints,
+        u: &Floats,
+        mut take: impl FnMut(usize, TreeSample),
+    ) {
+        if let Some(light) = self.only {
+            slots.for_each(|slot| take(slot, TreeSample { light, pmf: 1.0 }));
+            return;
+        }
+        let mut descents = u.map(|u| Descent { node: 0, u, pmf: 1.0 });
+        let mut under_way = slots;
+        while !under_way.is_empty() {
+            under_way = under_way.keep(|slot| match self.descend(&mut descents[slot], &from.get(slot)) {
+                Some(None) => true,
+                Some(Some(sample)) => {
+                    take(slot, sample);
+                    false
+                }
+                None => false,
+            });
+        }
+    }
+
+    /// One step down: the light that it ends at, if it does; `None` where it leads to none.
+    #[inline(always)]
+    fn descend(&self, descent: &mut Descent, from: &ReferencePoint) -> Option<Option<TreeSample>> {
+        let node = self.nodes.get(descent.node as usize)?;
+        let weights = node.clusters.importance(from);
+        // How many lanes' sums, up to each, `x` is not below: without branches, which would go wrong as often as not.
+        let (mut sums, mut total) = ([0.0; LANES], 0.0);
+        for (sum, weight) in sums.iter_mut().zip(weights) {
+            total += weight;
+            *sum = total;
+        }
+        let x = descent.u * total;
+        let below = sums.iter().filter(|&&sum| sum <= x).count();
+        // The last lane of positive weight takes what rounding leaves over.
+        let lane = if below < LANES { below } else { weights.iter().rposition(|&w| w > 0.0)? };
+        let weight = weights[lane];
+        let (link, pmf) = (node.links[lane], descent.pmf * (weight / total));
+        if link & LIGHT != 0 {
+            return Some(Some(TreeSample { light: link & !LIGHT, pmf }));
+        }
+        let u = ((x - (sums[lane] - weight)) / weight).clamp(0.0, ONE_MINUS_EPSILON);
+        *descent = Descent { node: link, u, pmf };
+        Some(None)
     }
 
     /// The probability with which [`LightTree::sample`] draws `light`.
