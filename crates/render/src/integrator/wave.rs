@@ -97,17 +97,17 @@ impl Wave<'_> {
         slots: Slots,
         dimension: impl Fn(u16) -> Dimension,
     ) -> Floats {
-        match { slots }.next() {
-            Some(first) if self.in_step => group.get_1d(slots, dimension(self.paths[first].bounce)),
-            _ => {
-                let mut numbers = [0.0; WIDTH];
-                for slot in slots {
-                    let Path { sample, bounce, .. } = self.paths[slot];
-                    numbers[slot] = group[sample].get_1d(dimension(bounce));
-                }
-                numbers
-            }
+        if self.in_step
+            && let Some(first) = slots.into_iter().next()
+        {
+            return group.get_1d(slots, dimension(self.paths[first].bounce));
         }
+        let mut numbers = [0.0; WIDTH];
+        for slot in slots {
+            let path = &self.paths[slot];
+            numbers[slot] = group[path.sample].get_1d(dimension(path.bounce));
+        }
+        numbers
     }
 
     /// Both numbers of a dimension at the vertices where paths are, for those in `slots`.
@@ -118,17 +118,17 @@ impl Wave<'_> {
         slots: Slots,
         dimension: impl Fn(u16) -> Dimension,
     ) -> Vec2s {
-        match { slots }.next() {
-            Some(first) if self.in_step => group.get_2d(slots, dimension(self.paths[first].bounce)),
-            _ => {
-                let mut numbers = Vec2s::ZERO;
-                for slot in slots {
-                    let Path { sample, bounce, .. } = self.paths[slot];
-                    numbers.set(slot, group[sample].get_2d(dimension(bounce)));
-                }
-                numbers
-            }
+        if self.in_step
+            && let Some(first) = slots.into_iter().next()
+        {
+            return group.get_2d(slots, dimension(self.paths[first].bounce));
         }
+        let mut numbers = Vec2s::ZERO;
+        for slot in slots {
+            let path = &self.paths[slot];
+            numbers.set(slot, group[path.sample].get_2d(dimension(path.bounce)));
+        }
+        numbers
     }
 
     /// [`Path::carried`] of the path in a slot.
