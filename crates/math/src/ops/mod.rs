@@ -107,6 +107,16 @@ pub fn atan2<F: Float>(y: F, x: F) -> F {
     y.apply2(x, trigonometry::atan2_f32, trigonometry::atan2)
 }
 
+/// The largest integer that is not above `x`: that of the standard library without a call and without branches.
+#[inline]
+pub fn floor(x: f32) -> f32 {
+    // From here on floats are integers: added and taken away it leaves the nearest one.
+    const INTEGERS: f32 = 8_388_608.0;
+    let nearest = ((x.abs() + INTEGERS) - INTEGERS).copysign(x);
+    let below = if nearest > x { nearest - 1.0 } else { nearest };
+    if x.abs() < INTEGERS { below } else { x }
+}
+
 /// `x` to the power of `y`.
 #[inline]
 pub fn powf<F: Float>(x: F, y: F) -> F {
@@ -149,6 +159,18 @@ pub fn ln_of_normal(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn integers_below_are_the_standard_librarys() {
+        let near = |x: f32| [x.next_down(), x, x.next_up()];
+        let numbers = (0..=u32::MAX).step_by(99_991).map(f32::from_bits);
+        let edges = [0.0, 0.5, 1.0, 1.5, 2.5, 4_194_304.5, 8_388_607.5, 8_388_608.0, 1e30, f32::INFINITY];
+        let edges = edges.into_iter().flat_map(near).flat_map(|x| [x, -x]);
+        for x in numbers.chain(edges).filter(|x| !x.is_nan()) {
+            assert_eq!(floor(x).to_bits(), x.floor().to_bits(), "{x}");
+        }
+        assert!(floor(f32::NAN).is_nan());
+    }
 
     /// A change of these bits changes pictures.
     #[test]

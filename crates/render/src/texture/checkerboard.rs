@@ -1,6 +1,6 @@
 //! Two textures in turn, in squares or cubes of side one.
 
-use tenfold_math::{Vec2, Vec3};
+use tenfold_math::{Vec2, Vec3, ops::floor};
 
 use super::{Mapping2, Mapping3, TextureContext};
 
@@ -47,13 +47,13 @@ impl Board {
 /// The square wave that is 1 on [0, 1) and −1 on [1, 2), under a tent filter of half width `r`.
 #[inline]
 fn wave(x: f32, r: f32) -> f32 {
-    if (x - r).floor() == (x + r).floor() {
-        return if (0.5 * x).floor() == 0.5 * x.floor() { 1.0 } else { -1.0 };
+    if floor(x - r) == floor(x + r) {
+        return if floor(0.5 * x) == 0.5 * floor(x) { 1.0 } else { -1.0 };
     }
     // A tent is a box applied to itself, so its integral is the second difference of the wave's second
     // antiderivative. The part of that which grows with x cancels and is left out for the sake of rounding.
     let second_antiderivative = |x: f32| {
-        let y = 0.5 * x - (0.5 * x).floor() - 0.5;
+        let y = 0.5 * x - floor(0.5 * x) - 0.5;
         y * (1.0 - 2.0 * y.abs())
     };
     let difference =
