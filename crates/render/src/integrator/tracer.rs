@@ -103,8 +103,10 @@ impl<'a> PathTracer<'a> {
                 self.add_direct(&vertices, group, samples, workspace);
                 live = self.scatter(&vertices, group, samples, workspace);
             }
-            let Some(waiting) = workspace.pending.pop() else { return };
-            live = workspace.wave.resume(waiting);
+            if workspace.pending.is_empty() {
+                return;
+            }
+            live = workspace.wave.resume(&mut workspace.pending);
         }
     }
 }

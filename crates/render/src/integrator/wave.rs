@@ -79,14 +79,23 @@ impl Wave<'_> {
         Slots::first(count)
     }
 
-    /// Puts a path that has waited into the first slot.
-    pub(super) fn resume(&mut self, waiting: Waiting) -> Slots {
+    /// Takes of each sample's `waiting` paths the last, in the slot of the sample.
+    pub(super) fn resume(&mut self, waiting: &mut Vec<Waiting>) -> Slots {
         self.in_step = false;
-        self.paths[0] = waiting.path;
-        self.weights.set(0, &waiting.weights, &waiting.path.lanes);
-        self.rays.set(0, waiting.ray);
-        self.from.set(0, waiting.from);
-        Slots::first(1)
+        let mut last = [None; WIDTH];
+        waiting.iter().enumerate().for_each(|(i, w)| last[w.path.sample] = Some(i));
+        let mut slots = Slots::NONE;
+        for (slot, i) in last.into_iter().enumerate() {
+            let Some(Waiting { path, weights, ray, from }) = i.map(|i| waiting[i]) else { continue };
+            self.paths[slot] = path;
+            self.weights.set(slot, &weights, &path.lanes);
+            self.rays.set(slot, ray);
+            self.from.set(slot, from);
+            slots.insert(slot);
+        }
+        let mut i = 0..;
+        waiting.retain(|w| i.next() != last[w.path.sample]);
+        slots
     }
 
     /// The number of a dimension at the vertices where paths are, for those in `slots`.
