@@ -30,7 +30,7 @@ impl<'a> PathTracer<'a> {
             _ => wave.numbers_1d(group, seeing, Dimension::light_choice),
         };
         let u = wave.numbers_2d(group, seeing, Dimension::light_point);
-        let wavelengths = |slot: usize| &samples[wave.paths[slot].sample].wavelengths;
+        let wavelengths = |slot: usize| &samples[slot].wavelengths;
         let lit = scene_lights.samples(strategy, seeing, &wave.from, &u_choice, &u, wavelengths, light);
         if lit.is_empty() {
             return;
@@ -52,9 +52,8 @@ impl<'a> PathTracer<'a> {
                 continue;
             }
             rays.shadow += 1;
-            let path = &wave.paths[slot];
-            let sample = &mut samples[path.sample];
-            let chance = Chance { sampler: sample.sampler, bounce: path.bounce };
+            let sample = &mut samples[slot];
+            let chance = Chance { sampler: sample.sampler, bounce: wave.paths[slot].bounce };
             if !self.is_shadowed(slot, light, courses, chance) {
                 sample.radiance += arriving;
             }

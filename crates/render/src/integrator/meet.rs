@@ -36,16 +36,15 @@ impl<'a> PathTracer<'a> {
         courses.prepare(&wave.rays);
         let mut hits = [None; WIDTH];
         for slot in live {
-            let (path, ray) = (&wave.paths[slot], wave.rays.get(slot));
-            let chance = Chance { sampler: samples[path.sample].sampler, bounce: path.bounce };
+            let ray = wave.rays.get(slot);
+            let chance = Chance { sampler: samples[slot].sampler, bounce: wave.paths[slot].bounce };
             let stops = |c: &Candidate<'_>| self.stops(&ray, c, chance);
             hits[slot] = self.scene.world.intersect_slot(slot, &wave.rays, courses, f32::INFINITY, stops);
         }
         let mut vertices = Vertices::default();
         let plain = self.meet_plain(live, &hits, samples, wave, surfaces, &mut vertices);
         for slot in live.without(plain) {
-            let sample = &mut samples[wave.paths[slot].sample];
-            self.meet(slot, hits[slot], sample, wave, rays, &mut vertices);
+            self.meet(slot, hits[slot], &mut samples[slot], wave, rays, &mut vertices);
         }
         vertices
     }
@@ -89,7 +88,7 @@ impl<'a> PathTracer<'a> {
                 face_index: surfaces.face_index[slot],
                 ..TextureContext::default()
             };
-            let sample = &samples[wave.paths[slot].sample];
+            let sample = &samples[slot];
             let material = self.look(hit.primitive).material;
             let (n, tangent, wo) = (at.n, surfaces.dpdu.get(slot), surfaces.wo.get(slot));
             let (p, p_error, time) = (at.p, surfaces.p_error.get(slot), wave.rays.time[slot]);

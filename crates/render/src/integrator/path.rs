@@ -6,8 +6,6 @@ use tenfold_spectrum::SampledSpectrum;
 /// A path under way.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Path {
-    /// Which of the samples that are traced together it belongs to.
-    pub(super) sample: usize,
     pub(super) lanes: Lanes,
     /// Surfaces met, interfaces not counted.
     pub(super) bounce: u16,
@@ -18,6 +16,8 @@ pub(super) struct Path {
 /// A path that waits for its turn.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Waiting {
+    /// That of its sample.
+    pub(super) slot: usize,
     pub(super) path: Path,
     pub(super) weights: Weights,
     /// Where it goes next.
@@ -27,10 +27,10 @@ pub(super) struct Waiting {
 }
 
 impl Path {
-    /// The path of a sample that starts at the camera.
+    /// A path that starts at the camera.
     #[inline]
-    pub(super) fn from_camera(sample: usize) -> Self {
-        Self { sample, lanes: Lanes::ALL, bounce: 0, specular: true }
+    pub(super) fn from_camera() -> Self {
+        Self { lanes: Lanes::ALL, bounce: 0, specular: true }
     }
 
     /// What the path carries back of the light `emitted` where it now is, weighed against a light sampled at its last vertex;

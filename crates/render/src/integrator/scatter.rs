@@ -31,9 +31,9 @@ impl<'a> PathTracer<'a> {
         for slot in vertices.other {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };
             let path = &mut wave.paths[slot];
-            let (wo, from, sample) = (wave.wo.get(slot), wave.from.get(slot), &samples[path.sample]);
+            let (wo, from, sample) = (wave.wo.get(slot), wave.from.get(slot), &samples[slot]);
             if vertices.parting.contains(slot) {
-                self.part(path, &wave.weights.get(slot), wo, &from, bsdf, sample, pending);
+                self.part(slot, path, &wave.weights.get(slot), wo, &from, bsdf, sample, pending);
                 continue;
             }
             let u_lobe = if bsdf.chooses_lobe() {
@@ -55,7 +55,7 @@ impl<'a> PathTracer<'a> {
         scattered.keep(|slot| {
             let path = &mut wave.paths[slot];
             path.bounce += 1;
-            let survival = survival(path, carried[slot], &samples[path.sample]);
+            let survival = survival(path, carried[slot], &samples[slot]);
             if survival < 1.0 {
                 wave.weights.strengthen(slot, survival);
             }
@@ -67,6 +67,7 @@ impl<'a> PathTracer<'a> {
     /// disperse.
     fn part(
         &self,
+        slot: usize,
         path: &Path,
         weights: &Weights,
         wo: Vec3,
@@ -77,14 +78,14 @@ impl<'a> PathTracer<'a> {
     ) {
         let mut push = |lanes: Lanes, mut weights: Weights, s: &BsdfSample| {
             let specular = s.lobe.is_specular();
-            let path = Path { lanes, bounce: path.bounce + 1, specular, ..*path };
+            let path = Path { lanes, bounce: path.bounce + 1, specular };
             weights.eta_scale *= s.eta * s.eta;
             let survival = survival(&path, weights.carried(&lanes), sample);
             if survival > 0.0 {
                 if survival < 1.0 {
                     weights.beta /= survival;
                 }
-                pending.push(Waiting { path, weights, ray: from.spawn_ray(s.wi), from: *from });
+                pending.push(Waiting { slot, path, weights, ray: from.spawn_ray(s.wi), from: *from });
             }
         };
         // All lanes use the same random numbers: as dispersion tends to zero, so do their differences.

@@ -10,12 +10,12 @@ use tenfold_math::{Floats, Rays, Slots, Vec2s, Vec3, Vec3s, WIDTH};
 use tenfold_sampling::{Dimension, SampleGroup};
 use tenfold_spectrum::{SampledSpectrum, Spectra};
 
-/// Paths side by side, one in each slot, which take every step together: what is the same for all of them is done in vector
+/// Paths side by side, each in the slot of its sample, which take every step together: what is the same for all of them is done in vector
 /// instructions.
 #[derive(Debug)]
 pub(super) struct Wave<'a> {
     pub(super) paths: [Path; WIDTH],
-    /// Whether every path is in the slot of its sample and all have come equally far.
+    /// Whether all have come equally far.
     in_step: bool,
     pub(super) weights: WaveWeights,
     /// Where the paths go next.
@@ -56,7 +56,7 @@ pub(super) struct Vertices {
 impl Default for Wave<'_> {
     fn default() -> Self {
         Self {
-            paths: [Path::from_camera(0); WIDTH],
+            paths: [Path::from_camera(); WIDTH],
             in_step: true,
             weights: WaveWeights::default(),
             rays: Rays::default(),
@@ -72,21 +72,21 @@ impl Wave<'_> {
     /// Puts the paths of `count` samples that start at the camera, with the first of `rays`, into the first slots.
     #[inline]
     pub(super) fn start(&mut self, count: usize, rays: &Rays) -> Slots {
-        (0..count).for_each(|slot| self.paths[slot] = Path::from_camera(slot));
+        self.paths = [Path::from_camera(); WIDTH];
         (0..WIDTH).for_each(|slot| self.weights.set(slot, &Weights::ONE, &Lanes::ALL));
         self.rays = *rays;
         self.in_step = true;
         Slots::first(count)
     }
 
-    /// Takes of each sample's `waiting` paths the last, in the slot of the sample.
+    /// Takes the last of each sample's `waiting` paths.
     pub(super) fn resume(&mut self, waiting: &mut Vec<Waiting>) -> Slots {
         self.in_step = false;
         let mut last = [None; WIDTH];
-        waiting.iter().enumerate().for_each(|(i, w)| last[w.path.sample] = Some(i));
+        waiting.iter().enumerate().for_each(|(i, w)| last[w.slot] = Some(i));
         let mut slots = Slots::NONE;
         for (slot, i) in last.into_iter().enumerate() {
-            let Some(Waiting { path, weights, ray, from }) = i.map(|i| waiting[i]) else { continue };
+            let Some(Waiting { path, weights, ray, from, .. }) = i.map(|i| waiting[i]) else { continue };
             self.paths[slot] = path;
             self.weights.set(slot, &weights, &path.lanes);
             self.rays.set(slot, ray);
@@ -94,7 +94,7 @@ impl Wave<'_> {
             slots.insert(slot);
         }
         let mut i = 0..;
-        waiting.retain(|w| i.next() != last[w.path.sample]);
+        waiting.retain(|w| i.next() != last[w.slot]);
         slots
     }
 
@@ -113,8 +113,7 @@ impl Wave<'_> {
         }
         let mut numbers = [0.0; WIDTH];
         for slot in slots {
-            let path = &self.paths[slot];
-            numbers[slot] = group[path.sample].get_1d(dimension(path.bounce));
+            numbers[slot] = group[slot].get_1d(dimension(self.paths[slot].bounce));
         }
         numbers
     }
@@ -134,8 +133,7 @@ impl Wave<'_> {
         }
         let mut numbers = Vec2s::ZERO;
         for slot in slots {
-            let path = &self.paths[slot];
-            numbers.set(slot, group[path.sample].get_2d(dimension(path.bounce)));
+            numbers.set(slot, group[slot].get_2d(dimension(self.paths[slot].bounce)));
         }
         numbers
     }
