@@ -139,12 +139,7 @@ impl DiffuseAreaLight {
         if !self.emits_toward(n, w) {
             return SampledSpectrum::ZERO;
         }
-        let AreaEmission { radiance, scale } = self.emission();
-        let value = match radiance {
-            AreaRadiance::Uniform(emission) => emission.sample(wavelengths),
-            AreaRadiance::Image(image) => image.at(uv, wavelengths),
-        };
-        *scale * value
+        self.radiance(uv, wavelengths)
     }
 
     #[inline]
@@ -210,14 +205,15 @@ impl DiffuseAreaLight {
             && matches!(strategy, ByTexture | Complementary | SolidAngle)
     }
 
-    /// The radiance of a surface that emits the same everywhere, on the side that emits.
+    /// Radiance of the point with texture coordinates `uv`, which matter to images only, on the side that emits.
     #[inline]
-    pub(super) fn even_radiance(&self, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+    pub(super) fn radiance(&self, uv: Vec2, wavelengths: &SampledWavelengths) -> SampledSpectrum {
         let AreaEmission { radiance, scale } = self.emission();
-        match radiance {
-            AreaRadiance::Uniform(emission) => *scale * emission.sample(wavelengths),
-            AreaRadiance::Image(_) => SampledSpectrum::ZERO,
-        }
+        let value = match radiance {
+            AreaRadiance::Uniform(emission) => emission.sample(wavelengths),
+            AreaRadiance::Image(image) => image.at(uv, wavelengths),
+        };
+        *scale * value
     }
 
     /// Whether both sides emit.

@@ -3,7 +3,7 @@
 use super::lights::{Choice, Lights};
 use super::{DiffuseAreaLight, Light, LightSample, LightStrategy, ShadowRay};
 use tenfold_geometry::{Balls, ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
-use tenfold_math::{Floats, Id, Rays, Slots, Vec2s, Vec3s, WIDTH, vectorized};
+use tenfold_math::{Floats, Id, Rays, Slots, Vec2, Vec2s, Vec3s, WIDTH, vectorized};
 use tenfold_spectrum::{SampledWavelengths, Spectra};
 
 /// With fewer points that see the same light, each is served by itself.
@@ -115,7 +115,7 @@ impl Lights {
             let Some(area) = self.area(&choices[slot]) else { continue };
             out.pdf[slot] = out.points.pdf[slot] * choices[slot].pmf;
             out.delta[slot] = area.is_invisible();
-            let radiance = area.even_radiance(wavelengths(slot));
+            let radiance = area.radiance(Vec2::ZERO, wavelengths(slot));
             out.radiance.set(slot, radiance);
             if out.pdf[slot] > 0.0 && !radiance.is_black() {
                 lit.insert(slot);
