@@ -42,7 +42,7 @@ fn inverse(d: Vec3) -> Vec3 {
     Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z))
 }
 
-/// What `Course` asks of a ray, in each slot.
+/// Room for what the tests of boxes and triangles want to know of the ray in each slot.
 #[derive(Copy, Clone, Debug)]
 pub struct RayCourses {
     inverse: Vec3s,
@@ -59,7 +59,7 @@ impl Default for RayCourses {
 impl RayCourses {
     /// Prepares `rays`.
     #[inline]
-    pub fn prepare(&mut self, rays: &Rays) {
+    pub(crate) fn prepare(&mut self, rays: &Rays) {
         prepare(rays, self);
     }
 

@@ -12,7 +12,7 @@ use crate::{
 pub use flat::FlatSurfaces;
 use hierarchies::Hierarchies;
 use search::{Search, State};
-use tenfold_math::{Bounds3, Id, Motion, Ray, Rays, Transform, Vec2, Vec3};
+use tenfold_math::{Bounds3, Floats, Id, Motion, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH};
 
 /// A shape in a world: what [`PrimitiveId::geometry`] names.
 #[derive(Clone, Debug)]
@@ -143,17 +143,20 @@ impl World {
         self.query::<false>(ray, t_max, filter)
     }
 
-    /// [`World::intersect`] for the ray in `slot` of `rays`, of which `courses` has been prepared.
-    #[inline]
-    pub fn intersect_slot(
+    /// [`World::intersect`] for the rays in `slots`, with no limit to their way; `hits` of other slots stay as they are. The filter is told the slot.
+    pub fn intersect_slots(
         &self,
-        slot: usize,
+        slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
-        t_max: f32,
-        filter: impl Fn(&Candidate<'_>) -> bool,
-    ) -> Option<Hit> {
-        self.query::<false>(&courses.of(slot, rays.get(slot)), t_max, filter)
+        courses: &mut RayCourses,
+        filter: impl Fn(usize, &Candidate<'_>) -> bool,
+        hits: &mut [Option<Hit>; WIDTH],
+    ) {
+        courses.prepare(rays);
+        for slot in slots {
+            let course = courses.of(slot, rays.get(slot));
+            hits[slot] = self.query::<false>(&course, f32::INFINITY, |candidate| filter(slot, candidate));
+        }
     }
 
     /// Whether there is any hit with `0 < t < t_max` that `filter` accepts.
@@ -162,17 +165,20 @@ impl World {
         self.query::<true>(ray, t_max, filter).is_some()
     }
 
-    /// [`World::occluded`] for the ray in `slot` of `rays`, of which `courses` has been prepared.
-    #[inline]
-    pub fn occluded_slot(
+    /// Those of `slots` for whose rays, which go on for `t_max` each, [`World::occluded`] holds. The filter is told the slot.
+    pub fn occluded_slots(
         &self,
-        slot: usize,
+        slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
-        t_max: f32,
-        filter: impl Fn(&Candidate<'_>) -> bool,
-    ) -> bool {
-        self.query::<true>(&courses.of(slot, rays.get(slot)), t_max, filter).is_some()
+        courses: &mut RayCourses,
+        t_max: &Floats,
+        filter: impl Fn(usize, &Candidate<'_>) -> bool,
+    ) -> Slots {
+        courses.prepare(rays);
+        slots.keep(|slot| {
+            let course = courses.of(slot, rays.get(slot));
+            self.query::<true>(&course, t_max[slot], |candidate| filter(slot, candidate)).is_some()
+        })
     }
 
     fn query<const ANY: bool>(

@@ -3,8 +3,8 @@
 use super::{
     PathTracer, Sample, Strategies, Workspace, even, passing::Chance, wave::Vertices, weights::weigh_sampled,
 };
-use crate::{bxdf::BsdfValue, light::LightSamples};
-use tenfold_geometry::RayCourses;
+use crate::bxdf::BsdfValue;
+use tenfold_geometry::Candidate;
 use tenfold_math::WIDTH;
 use tenfold_sampling::{Dimension, SampleGroup};
 
@@ -44,35 +44,18 @@ impl<'a> PathTracer<'a> {
             scattering.set(slot, f, pdf, wave.paths[slot].lanes.hero(), wi.dot(bsdf.frame().z).abs());
             parts[slot] = vertices.parting.contains(slot);
         }
-        courses.prepare(&light.shadow);
         weigh_sampled(combine, &wave.weights, scattering, light, &parts, arriving);
-        for slot in lit {
-            let arriving = arriving.get(slot);
-            if arriving.is_black() {
-                continue;
-            }
-            rays.shadow += 1;
-            let sample = &mut samples[slot];
-            let chance = Chance { sampler: sample.sampler, bounce: wave.paths[slot].bounce };
-            if !self.is_shadowed(slot, light, courses, chance) {
-                sample.radiance += arriving;
-            }
-        }
-    }
-
-    #[inline]
-    fn is_shadowed(
-        &self,
-        slot: usize,
-        light: &LightSamples,
-        courses: &RayCourses,
-        chance: Chance<'_>,
-    ) -> bool {
-        let ray = light.shadow.get(slot);
-        self.scene.world.occluded_slot(slot, &light.shadow, courses, light.t_max[slot], |c| {
+        let lit = lit.keep(|slot| !arriving.get(slot).is_black());
+        rays.shadow += lit.len() as u64;
+        let stops = |slot: usize, c: &Candidate<'_>| {
             // Light passes from one medium into the next.
             let material = self.scene.surfaces[c.user as usize].material;
-            !self.scene.materials.is_interface(material) && self.stops(&ray, c, chance)
-        })
+            let chance = Chance { sampler: samples[slot].sampler, bounce: wave.paths[slot].bounce };
+            !self.scene.materials.is_interface(material) && self.stops(&light.shadow.get(slot), c, chance)
+        };
+        let shadowed = self.scene.world.occluded_slots(lit, &light.shadow, courses, &light.t_max, stops);
+        for slot in lit.without(shadowed) {
+            samples[slot].radiance += arriving.get(slot);
+        }
     }
 }

@@ -33,14 +33,12 @@ impl<'a> PathTracer<'a> {
     ) -> Vertices {
         let Workspace { wave, courses, surfaces, rays, .. } = workspace;
         rays.path += live.len() as u64;
-        courses.prepare(&wave.rays);
         let mut hits = [None; WIDTH];
-        for slot in live {
-            let ray = wave.rays.get(slot);
+        let stops = |slot: usize, c: &Candidate<'_>| {
             let chance = Chance { sampler: samples[slot].sampler, bounce: wave.paths[slot].bounce };
-            let stops = |c: &Candidate<'_>| self.stops(&ray, c, chance);
-            hits[slot] = self.scene.world.intersect_slot(slot, &wave.rays, courses, f32::INFINITY, stops);
-        }
+            self.stops(&wave.rays.get(slot), c, chance)
+        };
+        self.scene.world.intersect_slots(live, &wave.rays, courses, stops, &mut hits);
         let mut vertices = Vertices::default();
         let plain = self.meet_plain(live, &hits, samples, wave, surfaces, &mut vertices);
         for slot in live.without(plain) {
