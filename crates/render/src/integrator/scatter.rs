@@ -23,26 +23,23 @@ impl<'a> PathTracer<'a> {
         workspace: &mut Workspace<'a>,
     ) -> Slots {
         let Workspace { wave, scattering, pending, .. } = workspace;
+        let together = vertices.other.without(vertices.parting);
+        let u = wave.numbers_2d(group, vertices.even.or(together), Dimension::scatter_direction);
+        let choosing = together.keep(|slot| wave.bsdfs[slot].as_ref().is_some_and(Bsdf::chooses_lobe));
+        let u_lobe = wave.numbers_1d(group, choosing, Dimension::scatter_lobe);
         if !vertices.even.is_empty() {
-            let u = wave.numbers_2d(group, vertices.even, Dimension::scatter_direction);
             even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut wave.rays, scattering);
         }
         let mut scattered = vertices.even.keep(|slot| scattering.hero_pdf[slot] > 0.0);
         for slot in vertices.other {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };
             let path = &mut wave.paths[slot];
-            let (wo, from, sample) = (wave.wo.get(slot), wave.from.get(slot), &samples[slot]);
+            let (wo, from) = (wave.wo.get(slot), wave.from.get(slot));
             if vertices.parting.contains(slot) {
-                self.part(slot, path, &wave.weights.get(slot), wo, &from, bsdf, sample, pending);
+                self.part(slot, path, &wave.weights.get(slot), wo, &from, bsdf, &samples[slot], pending);
                 continue;
             }
-            let u_lobe = if bsdf.chooses_lobe() {
-                sample.sampler.get_1d(Dimension::scatter_lobe(path.bounce))
-            } else {
-                0.0
-            };
-            let u = sample.sampler.get_2d(Dimension::scatter_direction(path.bounce));
-            let Some(s) = &bsdf.sample(wo, u_lobe, u, path.lanes.hero()) else { continue };
+            let Some(s) = &bsdf.sample(wo, u_lobe[slot], u.get(slot), path.lanes.hero()) else { continue };
             scattering.set(slot, s.f, s.pdf, path.lanes.hero(), s.wi.dot(bsdf.frame().z).abs());
             wave.weights.eta_scale[slot] *= s.eta * s.eta;
             path.specular = s.lobe.is_specular();
@@ -52,15 +49,16 @@ impl<'a> PathTracer<'a> {
         let mut carried = [0.0; WIDTH];
         advance(&mut wave.weights, scattering, &mut carried);
         vertices.even.for_each(|slot| wave.paths[slot].specular = false);
-        scattered.keep(|slot| {
+        let mut chances = [0.0; WIDTH];
+        for slot in scattered {
             let path = &mut wave.paths[slot];
             path.bounce += 1;
-            let survival = survival(path, carried[slot], &samples[slot]);
-            if survival < 1.0 {
-                wave.weights.strengthen(slot, survival);
-            }
-            survival > 0.0
-        })
+            chances[slot] = survival(path, carried[slot], &samples[slot]);
+        }
+        let at_stake = scattered.keep(|slot| chances[slot] > 0.0 && chances[slot] < 1.0);
+        let u = wave.numbers_1d(group, at_stake, Dimension::roulette);
+        at_stake.for_each(|slot| wave.weights.strengthen(slot, chances[slot]));
+        scattered.keep(|slot| chances[slot] > u[slot])
     }
 
     /// Sends every lane of a settled path its own way. Lanes that are reflected stay together: reflection does not
@@ -80,11 +78,9 @@ impl<'a> PathTracer<'a> {
             let specular = s.lobe.is_specular();
             let path = Path { lanes, bounce: path.bounce + 1, specular };
             weights.eta_scale *= s.eta * s.eta;
-            let survival = survival(&path, weights.carried(&lanes), sample);
-            if survival > 0.0 {
-                if survival < 1.0 {
-                    weights.beta /= survival;
-                }
+            let chance = survival(&path, weights.carried(&lanes), sample);
+            if chance == 1.0 || sample.sampler.get_1d(Dimension::roulette(path.bounce)) < chance {
+                weights.beta /= chance;
                 pending.push(Waiting { slot, path, weights, ray: from.spawn_ray(s.wi), from: *from });
             }
         };
@@ -127,7 +123,7 @@ const SAFE: f32 = 0.25;
 /// Most of the cost of a path is in its first vertices, and most of the noise of roulette comes from ending paths that carry much:
 /// chances in proportion to what is carried, up to 1 at a quarter, were the best of those tried.
 ///
-/// The chance with which a path that carries `carried` at most goes on: 1 of those that go on in any case, 0 of those that do not.
+/// The chance with which a path that carries `carried` at most goes on.
 #[inline]
 fn survival(path: &Path, carried: f32, sample: &Sample<'_>) -> f32 {
     if carried == 0.0 {
@@ -136,6 +132,5 @@ fn survival(path: &Path, carried: f32, sample: &Sample<'_>) -> f32 {
     if path.bounce < 2 || carried >= SAFE || sample.sampler.held(Variable::Roulette).is_some() {
         return 1.0;
     }
-    let survival = (carried / SAFE).max(0.05);
-    if sample.sampler.get_1d(Dimension::roulette(path.bounce)) >= survival { 0.0 } else { survival }
+    (carried / SAFE).max(0.05)
 }
