@@ -1,6 +1,6 @@
 //! What the tests of boxes and triangles want to know of rays.
 
-use crate::shape::{RayShear, fastest_axis};
+use crate::shape::{RayShear, fastest_axis, permuted};
 use tenfold_math::{Ray, Rays, Vec3, Vec3s, WIDTH, vectorized};
 
 /// A ray on its way through a hierarchy.
@@ -45,14 +45,17 @@ fn inverse(d: Vec3) -> Vec3 {
 /// Room for what the tests of boxes and triangles want to know of the ray in each slot.
 #[derive(Copy, Clone, Debug)]
 pub struct RayCourses {
-    inverse: Vec3s,
-    shear: Vec3s,
-    axis: [u32; WIDTH],
+    pub(crate) inverse: Vec3s,
+    pub(crate) shear: Vec3s,
+    /// The axes along which they run fastest.
+    pub(crate) axis: [u32; WIDTH],
+    /// Their origins by axes permuted so that this one is the last.
+    pub(crate) origin: Vec3s,
 }
 
 impl Default for RayCourses {
     fn default() -> Self {
-        Self { inverse: Vec3s::ZERO, shear: Vec3s::ZERO, axis: [0; WIDTH] }
+        Self { inverse: Vec3s::ZERO, shear: Vec3s::ZERO, axis: [0; WIDTH], origin: Vec3s::ZERO }
     }
 }
 
@@ -105,6 +108,7 @@ vectorized! {
             out.inverse.set(i, inverse(d));
             out.shear.set(i, RayShear::along(d, axis));
             out.axis[i] = axis;
+            out.origin.set(i, permuted(rays.origin.get(i), axis));
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Spheres that are whole and round in the world: hit and sampled there.
 
-use super::quadric::ObjectRay;
+use super::{
+    ShapeHit,
+    quadric::{Approach, ObjectRay},
+};
 use crate::{ReferencePoint, ReferencePoints, ShapeSamples};
 use glam::DVec3;
 use std::f32::consts::{PI, TAU};
@@ -19,8 +22,16 @@ pub struct Ball {
 }
 
 impl Ball {
+    /// Where a ray first hits the ball with `0 < t < t_max`, and whether it does. Without branches, for loops over slots: [`Sphere`](super::Sphere) does the
+    /// same operations.
+    #[inline(always)]
+    pub(crate) fn hit(&self, ray: &Ray, t_max: f32) -> (ShapeHit, bool) {
+        let ObjectRay { o, d, .. } = self.ray(ray);
+        Approach::new(o, d, f64::from(self.radius)).roots(0.0).first(t_max)
+    }
+
     /// A ray from the centre of the ball.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> ObjectRay {
         let o = ray.origin.as_dvec3() - self.centre.as_dvec3();
         ObjectRay { o, d: ray.direction.as_dvec3(), o_error: DVec3::ZERO }

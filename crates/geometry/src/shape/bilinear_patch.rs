@@ -3,7 +3,7 @@ use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
     sample::pdf_by_solid_angle,
 };
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use std::ops::{Add, Mul};
 use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
 use tenfold_sampling::warp::{bilinear_pdf, sample_bilinear};
@@ -99,17 +99,16 @@ impl<'a> BilinearPatch<'a> {
         mut accept: impl FnMut(ShapeHit) -> bool,
     ) -> Option<ShapeHit> {
         let corners = self.positions();
-        let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
-        if p01 - p00 != p11 - p10 {
+        let Some(parallelogram) = Parallelogram::new(&corners) else {
             return intersect_twisted(&corners, ray, t_max, &mut accept);
-        }
-        // A parallelogram: Cramer's rule for p00 + u · across + v · e00 = o + t · d.
-        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
-        let (e00, across, from) = (p01 - p00, p10 - p00, o - p00);
-        let (n, q) = (across.cross(e00), from.cross(d));
-        let scale = 1.0 / d.dot(n);
-        let hit = [-from.dot(n) * scale, -e00.dot(q) * scale, across.dot(q) * scale];
-        hit_at(hit, &corners, ray, t_max).filter(|hit| accept(*hit))
+        };
+        let (hit, is_hit) = parallelogram.hit(ray, t_max);
+        (is_hit && accept(hit)).then_some(hit)
+    }
+
+    /// The patch as a parallelogram, where it is one.
+    pub(crate) fn parallelogram(&self) -> Option<Parallelogram> {
+        Parallelogram::new(&self.positions())
     }
 
     pub(super) fn uv(&self, _: &Ray, hit: &ShapeHit) -> Vec2 {
@@ -252,18 +251,58 @@ fn normal_derivatives([dpdu, dpdv]: [Vec3A; 2], twist: f32) -> [Vec3A; 2] {
     [(uv * s) * dpdu - (uu * s) * dpdv, (uv * s) * dpdv - (vv * s) * dpdu]
 }
 
-/// The hit with the parameters `t`, `u` and `v`, where it is one.
+/// A patch whose opposite edges are the same, to be hit; in double precision.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Parallelogram {
+    p00: DVec3,
+    /// To the next corners, by u and by v.
+    edges: [DVec3; 2],
+    /// Across these, of any length.
+    n: DVec3,
+    largest: f32,
+}
+
+impl Parallelogram {
+    #[inline(always)]
+    fn new(corners: &[Vec3; 4]) -> Option<Self> {
+        let [p00, p10, p01, p11] = corners.map(Vec3::as_dvec3);
+        let edges = [p10 - p00, p01 - p00];
+        let n = edges[0].cross(edges[1]);
+        (edges[1] == p11 - p10).then(|| Self { p00, edges, n, largest: largest(corners) })
+    }
+
+    /// Where a ray hits it with `0 < t < t_max`, and whether it does. Without branches, for loops over slots.
+    #[inline(always)]
+    pub(crate) fn hit(&self, ray: &Ray, t_max: f32) -> (ShapeHit, bool) {
+        // Cramer's rule for p00 + u · edges[0] + v · edges[1] = o + t · d.
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let from = o - self.p00;
+        let q = from.cross(d);
+        let scale = 1.0 / d.dot(self.n);
+        let [across, e00] = self.edges;
+        let hit = [-from.dot(self.n) * scale, -e00.dot(q) * scale, across.dot(q) * scale];
+        hit_at(hit, self.largest, ray, t_max)
+    }
+}
+
+/// The largest coordinate of the corners, without its sign.
 #[inline(always)]
-fn hit_at([t, u, v]: [f64; 3], corners: &[Vec3; 4], ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+fn largest(corners: &[Vec3; 4]) -> f32 {
+    corners.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())).max_element()
+}
+
+/// The hit with the parameters `t`, `u` and `v`, and whether it is one.
+#[inline(always)]
+fn hit_at([t, u, v]: [f64; 3], largest: f32, ray: &Ray, t_max: f32) -> (ShapeHit, bool) {
     let inside = |x: f64| (-SLACK..=1.0 + SLACK).contains(&x);
     // Nearer than rounding can tell from the origin's own surface.
-    let t_min = || {
-        let size = corners.iter().fold(ray.origin.abs(), |m, p| m.max(p.abs())).max_element();
-        1e-13 * f64::from(size) / ray.direction.as_dvec3().length()
-    };
-    let is_hit = inside(u) && inside(v) && t > 0.0 && (t as f32) < t_max && t > t_min();
+    let higher = |a: f32, b: f32| if a > b { a } else { b };
+    let origin = ray.origin.abs();
+    let size = higher(higher(origin.x, origin.y), higher(origin.z, largest));
+    let t_min = 1e-13 * f64::from(size) / ray.direction.as_dvec3().length_squared().sqrt();
+    let is_hit = inside(u) & inside(v) & (t > 0.0) & ((t as f32) < t_max) & (t > t_min);
     let clamped = |x: f64| (x as f32).clamp(0.0, 1.0);
-    is_hit.then(|| ShapeHit { t: t as f32, u: clamped(u), v: clamped(v) })
+    (ShapeHit { t: t as f32, u: clamped(u), v: clamped(v) }, is_hit)
 }
 
 /// Reshetov (2019), "Cool Patches": the ray meets the line at `u` where `((a(u) − o) × d) · (b(u) − a(u)) = 0`, a
@@ -281,6 +320,7 @@ fn intersect_twisted(
     let a = (p10 - p00).cross(d).dot(e11 - e00);
     let c = (p00 - o).cross(d).dot(e00);
     let b = (p10 - o).cross(d).dot(e11) - (a + c);
+    let largest = largest(corners);
     let hit = |u: f64| {
         // Also leaves out NaN.
         if !(-SLACK..=1.0 + SLACK).contains(&u) {
@@ -292,7 +332,9 @@ fn intersect_twisted(
         let perpendicular = d.cross(across);
         let scale = 1.0 / perpendicular.length_squared();
         let v = delta.cross(d).dot(perpendicular) * scale;
-        hit_at([delta.cross(across).dot(perpendicular) * scale, u, v], corners, ray, t_max)
+        let t = delta.cross(across).dot(perpendicular) * scale;
+        let (hit, is_hit) = hit_at([t, u, v], largest, ray, t_max);
+        is_hit.then_some(hit)
     };
     let mut hits = quadratic_roots(a, b, c).map(hit);
     if let [Some(first), Some(second)] = hits

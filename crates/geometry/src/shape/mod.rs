@@ -11,13 +11,14 @@ mod triangle;
 
 pub use ball::{Ball, Balls};
 pub use bilinear_patch::BilinearPatch;
+pub(crate) use bilinear_patch::Parallelogram;
 pub use cylinder::{Cylinder, CylinderParams};
 pub use disk::{Disk, DiskParams};
 pub use quadric::ShapeError;
 pub use rectangle::Rectangle;
 pub use sphere::{Sphere, SphereParams};
 pub use triangle::Triangle;
-pub(crate) use triangle::{FlatTriangle, RayShear, fastest_axis};
+pub(crate) use triangle::{FlatTriangle, RayShear, ShearedTriangle, fastest_axis, permuted};
 
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,

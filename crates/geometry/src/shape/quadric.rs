@@ -124,10 +124,20 @@ pub(super) struct Roots {
 impl Roots {
     /// Whether a positive root may be the origin's own surface: the `shift` of |o|² − r² moves it by √(shift/a) near a double root, elsewhere by
     /// shift / (a · distance of the roots).
-    #[inline]
+    #[inline(always)]
     fn may_be_origin(&self, t: f64) -> bool {
         let Self { t: [near, far], a, shift } = *self;
-        a * t * t <= shift && a * (far - near) * t <= shift
+        (a * t * t <= shift) & (a * (far - near) * t <= shift)
+    }
+
+    /// The first hit with `0 < t < t_max` and whether there is one, for a quadric that is whole.
+    #[inline(always)]
+    pub(super) fn first(&self, t_max: f32) -> (ShapeHit, bool) {
+        let is_hit = |t: f64| (t > 0.0) & ((t as f32) < t_max) & !self.may_be_origin(t);
+        let [near, far] = self.t;
+        let (is_near, is_far) = (is_hit(near), is_hit(far));
+        let t = if is_near { near } else { far };
+        (ShapeHit { t: t as f32, u: 0.0, v: 0.0 }, is_near | is_far)
     }
 
     /// The first hit with `0 < t < t_max` that is not cut away and that `accept` takes.
@@ -151,21 +161,47 @@ impl Roots {
 /// Roots of `|o + t·d|² = r²`, where |o|² is known within twice `half_shift` (leave out z for a cylinder by setting it to 0).
 #[inline]
 pub(super) fn roots(o: DVec3, d: DVec3, half_shift: f64, r: f64) -> Option<Roots> {
-    let a = d.length_squared();
-    if !(a > 0.0) {
-        return None;
+    let approach = Approach::new(o, d, r);
+    approach.comes_within().then(|| approach.roots(half_shift))
+}
+
+/// Where a line comes closest to the centre of a quadric.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Approach {
+    /// The ray parameter.
+    t: f64,
+    /// |d|².
+    a: f64,
+    r: f64,
+    /// r² less the square of the distance.
+    discriminant: f64,
+}
+
+impl Approach {
+    #[inline(always)]
+    pub(super) fn new(o: DVec3, d: DVec3, r: f64) -> Self {
+        let a = d.length_squared();
+        // From the point of closest approach: no cancellation in the discriminant far away
+        // (Haines et al. 2019, "Precision Improvements for Ray/Sphere Intersection").
+        let t = -o.dot(d) / a;
+        let closest = o + t * d;
+        Self { t, a, r, discriminant: r * r - closest.length_squared() }
     }
-    // From the point of closest approach: no cancellation in the discriminant far away
-    // (Haines et al. 2019, "Precision Improvements for Ray/Sphere Intersection").
-    let to_closest = -o.dot(d) / a;
-    let closest = o + to_closest * d;
-    let discriminant = r * r - closest.length_squared();
-    if !(discriminant >= 0.0) {
-        return None;
+
+    /// Whether the line meets the quadric: otherwise its roots are NaN.
+    #[inline(always)]
+    fn comes_within(&self) -> bool {
+        (self.a > 0.0) & (self.discriminant >= 0.0)
     }
-    let half = (discriminant / a).sqrt();
-    let shift = 2.0 * (half_shift + r * r * f64::from(f32::EPSILON));
-    Some(Roots { t: [to_closest - half, to_closest + half], a, shift })
+
+    /// See [`roots`].
+    #[inline(always)]
+    pub(super) fn roots(&self, half_shift: f64) -> Roots {
+        let Self { t, a, r, discriminant } = *self;
+        let half = (discriminant / a).sqrt();
+        let shift = 2.0 * (half_shift + r * r * f64::from(f32::EPSILON));
+        Roots { t: [t - half, t + half], a, shift }
+    }
 }
 
 /// Nodes and weights of Gauss's quadrature with four points on [0, 1].

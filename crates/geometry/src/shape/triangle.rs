@@ -345,17 +345,8 @@ impl RayShear {
     /// The shear of rays in the direction `d`, which is fastest along `axis`.
     #[inline(always)]
     pub(crate) fn along(d: Vec3, axis: u32) -> Vec3 {
-        let by_axis = |x, y, z| {
-            if axis == 0 {
-                x
-            } else if axis == 1 {
-                y
-            } else {
-                z
-            }
-        };
-        let (x, y, z) = (by_axis(d.y, d.z, d.x), by_axis(d.z, d.x, d.y), by_axis(d.x, d.y, d.z));
-        Vec3::new(-x / z, -y / z, 1.0 / z)
+        let d = permuted(d, axis);
+        Vec3::new(-d.x / d.z, -d.y / d.z, 1.0 / d.z)
     }
 
     /// The origin by its new axes.
@@ -371,40 +362,109 @@ impl RayShear {
     /// zero; zero counts as inside for both neighbours of an edge: nothing leaks.
     pub(crate) fn intersect(&self, p: [Vec3; 3], t_max: f32) -> Option<ShapeHit> {
         let [kx, ky, kz] = self.axes;
-        let s = self.shear;
-        let v = p.map(|p| {
-            let p = p - self.origin;
-            Vec3::new(p[kx] + s.x * p[kz], p[ky] + s.y * p[kz], p[kz])
-        });
-        let edge = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
-        let mut e = [edge(v[1], v[2]), edge(v[2], v[0]), edge(v[0], v[1])];
-        let outside = |e: &[f32; 3]| e.iter().any(|&e| e < 0.0) && e.iter().any(|&e| e > 0.0);
-        if outside(&e) {
+        let triangle = ShearedTriangle::new(
+            p.map(|p| {
+                let p = p - self.origin;
+                Vec3::new(p[kx], p[ky], p[kz])
+            }),
+            self.shear,
+        );
+        if !triangle.is_inside() {
             return None;
         }
-        let mut det = (e[0] + e[1]) + e[2];
-        if det == 0.0 {
-            e = exact_edges(v);
-            det = (e[0] + e[1]) + e[2];
-            if outside(&e) || det == 0.0 {
-                return None;
-            }
+        let triangle = if triangle.determinant() == 0.0 { triangle.by_exact_products() } else { triangle };
+        if !triangle.is_inside() || triangle.determinant() == 0.0 {
+            return None;
         }
-        let z = v.map(|v| v.z * s.z);
-        let inv_det = 1.0 / det;
-        let t = ((e[0] * z[0] + e[1] * z[1]) + e[2] * z[2]) * inv_det;
-        (is_in_front(t, v, z, inv_det) && t < t_max).then(|| ShapeHit {
-            t,
-            u: e[1] * inv_det,
-            v: e[2] * inv_det,
-        })
+        let (hit, is_in_front) = triangle.hit(self.shear.z);
+        (is_in_front && hit.t < t_max).then_some(hit)
     }
 }
 
-/// Edge functions from exact products.
-pub(crate) fn exact_edges(v: [Vec3; 3]) -> [f32; 3] {
-    let edge = |a: Vec3, b: Vec3| (f64::from(a.x) * f64::from(b.y) - f64::from(a.y) * f64::from(b.x)) as f32;
+/// A triangle in the space where a ray runs along z through the origin, before it is scaled along that axis.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct ShearedTriangle {
+    vertices: [Vec3; 3],
+    /// Twice the areas that the edges span with the ray: as the barycentric weights of the opposite vertices.
+    edges: [f32; 3],
+}
+
+impl ShearedTriangle {
+    /// The triangle whose vertices, less the origin of the ray, are `p` by permuted axes.
+    #[inline(always)]
+    pub(crate) fn new(p: [Vec3; 3], shear: Vec3) -> Self {
+        let sheared = |p: Vec3| Vec3::new(p.x + shear.x * p.z, p.y + shear.y * p.z, p.z);
+        let vertices = [sheared(p[0]), sheared(p[1]), sheared(p[2])];
+        let edge = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
+        Self { vertices, edges: opposite_edges(vertices, edge) }
+    }
+
+    /// The same where the edge functions cancelled.
+    fn by_exact_products(&self) -> Self {
+        let edge =
+            |a: Vec3, b: Vec3| (f64::from(a.x) * f64::from(b.y) - f64::from(a.y) * f64::from(b.x)) as f32;
+        Self { edges: opposite_edges(self.vertices, edge), ..*self }
+    }
+
+    /// Whether the ray's line passes within, borders included.
+    #[inline(always)]
+    pub(crate) fn is_inside(&self) -> bool {
+        let [a, b, c] = self.edges;
+        let lowest = lower(a, lower(b, c));
+        let highest = higher(a, higher(b, c));
+        (lowest >= 0.0) | (highest <= 0.0)
+    }
+
+    /// The sum of the edge functions.
+    #[inline(always)]
+    pub(crate) fn determinant(&self) -> f32 {
+        let [a, b, c] = self.edges;
+        (a + b) + c
+    }
+
+    /// Where the ray, whose scale along z is `scale`, meets it, and whether that is safely in front of the origin; without a meaning for a
+    /// determinant of 0.
+    #[inline(always)]
+    pub(crate) fn hit(&self, scale: f32) -> (ShapeHit, bool) {
+        let (e, v) = (self.edges, self.vertices);
+        let z = [v[0].z * scale, v[1].z * scale, v[2].z * scale];
+        let inv_det = 1.0 / self.determinant();
+        let t = ((e[0] * z[0] + e[1] * z[1]) + e[2] * z[2]) * inv_det;
+        (ShapeHit { t, u: e[1] * inv_det, v: e[2] * inv_det }, is_in_front(t, v, z, inv_det))
+    }
+}
+
+/// `v` by the axes that become x, y and z where a ray runs fastest along `axis`.
+#[inline(always)]
+pub(crate) fn permuted(v: Vec3, axis: u32) -> Vec3 {
+    let by_axis = |x, y, z| {
+        if axis == 0 {
+            x
+        } else if axis == 1 {
+            y
+        } else {
+            z
+        }
+    };
+    Vec3::new(by_axis(v.y, v.z, v.x), by_axis(v.z, v.x, v.y), by_axis(v.x, v.y, v.z))
+}
+
+/// The function of an edge, of the edges opposite to the vertices.
+#[inline(always)]
+fn opposite_edges(v: [Vec3; 3], edge: impl Fn(Vec3, Vec3) -> f32) -> [f32; 3] {
     [edge(v[1], v[2]), edge(v[2], v[0]), edge(v[0], v[1])]
+}
+
+/// As the instruction of x86 has it, which `f32::min` is not for NaN.
+#[inline(always)]
+fn lower(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// See [`lower`].
+#[inline(always)]
+fn higher(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// Whether `t`, the mean of the vertices' ray parameters `z` weighted by the edge functions, is safely above 0.
@@ -412,19 +472,17 @@ pub(crate) fn exact_edges(v: [Vec3; 3]) -> [f32; 3] {
 /// It is where all vertices are in front, however thin the triangle looks: then no error of the weights can bring the mean
 /// behind. Otherwise it must exceed its error, in the way of the pbrt book, 4th edition, §6.8.7: the weights shift the
 /// mean by 3·δe/det of the range of `z`.
+#[inline(always)]
 fn is_in_front(t: f32, v: [Vec3; 3], z: [f32; 3], inv_det: f32) -> bool {
-    let max = |a: f32, b: f32, c: f32| a.abs().max(b.abs()).max(c.abs());
+    let max = |a: f32, b: f32, c: f32| higher(higher(a.abs(), b.abs()), c.abs());
     let delta_t = gamma(8) * max(z[0], z[1], z[2]);
-    let nearest = z[0].min(z[1].min(z[2]));
-    if nearest > delta_t {
-        return true;
-    }
+    let nearest = lower(z[0], lower(z[1], z[2]));
     let max_x = max(v[0].x, v[1].x, v[2].x);
     let max_y = max(v[0].y, v[1].y, v[2].y);
     let max_z = max(v[0].z, v[1].z, v[2].z);
     let delta_x = gamma(5) * (max_x + max_z);
     let delta_y = gamma(5) * (max_y + max_z);
     let delta_e = 2.0 * ((gamma(2) * max_x * max_y + delta_y * max_x) + delta_x * max_y);
-    let range = z[0].max(z[1].max(z[2])) - nearest;
-    t > delta_t + 3.0 * delta_e * range * inv_det.abs()
+    let range = higher(z[0], higher(z[1], z[2])) - nearest;
+    (nearest > delta_t) | (t > delta_t + 3.0 * delta_e * range * inv_det.abs())
 }

@@ -1,5 +1,6 @@
 //! Everything that rays can hit, immutable once built.
 
+mod few;
 mod flat;
 mod hierarchies;
 mod search;
@@ -9,6 +10,7 @@ use crate::{
     bvh::{Course, Level, RayCourses},
     interaction::toward_origin,
 };
+use few::Few;
 pub use flat::FlatSurfaces;
 use hierarchies::Hierarchies;
 use search::{Search, State};
@@ -86,6 +88,7 @@ pub struct WorldStats {
 pub struct World {
     geometries: Vec<Geometry>,
     hierarchies: Hierarchies,
+    few: Option<Few>,
     level: Level,
     bounds: Bounds3,
     stats: WorldStats,
@@ -99,7 +102,8 @@ impl World {
     pub fn build(desc: WorldDesc) -> Result<Self, WorldError> {
         let (hierarchies, stats) = Hierarchies::build(&desc)?;
         let bounds = hierarchies.top.bounds();
-        Ok(Self { geometries: desc.geometries, hierarchies, level: Level::detect(), bounds, stats })
+        let few = if desc.instances.is_empty() { Few::of(&desc.geometries) } else { None };
+        Ok(Self { geometries: desc.geometries, hierarchies, few, level: Level::detect(), bounds, stats })
     }
 
     /// The same world without vector instructions: it answers with the same bits.
@@ -153,6 +157,9 @@ impl World {
         hits: &mut [Option<Hit>; WIDTH],
     ) {
         courses.prepare(rays);
+        if let Some(few) = &self.few {
+            return few.intersect(&self.geometries, slots, rays, courses, hits);
+        }
         for slot in slots {
             let course = courses.of(slot, rays.get(slot));
             hits[slot] = self.query::<false>(&course, f32::INFINITY, |candidate| filter(slot, candidate));
@@ -175,6 +182,9 @@ impl World {
         filter: impl Fn(usize, &Candidate<'_>) -> bool,
     ) -> Slots {
         courses.prepare(rays);
+        if let Some(few) = &self.few {
+            return few.occluded(&self.geometries, slots, rays, courses, t_max);
+        }
         slots.keep(|slot| {
             let course = courses.of(slot, rays.get(slot));
             self.query::<true>(&course, t_max[slot], |candidate| filter(slot, candidate)).is_some()
@@ -188,9 +198,7 @@ impl World {
         filter: impl Fn(&Candidate<'_>) -> bool,
     ) -> Option<Hit> {
         let ray = course.ray();
-        // Rays that lead nowhere would visit everything in vain.
-        let leads_nowhere = !ray.direction.is_finite() || ray.direction == Vec3::ZERO || !(t_max > 0.0);
-        if leads_nowhere || !ray.origin.is_finite() {
+        if !leads_somewhere(ray, t_max) {
             return None;
         }
         let state = State { best: None, t_max };
@@ -239,4 +247,12 @@ impl World {
         let shape_hit = ShapeHit { t: hit.t, u: hit.u, v: hit.v };
         self.primitive(hit.primitive).uv(&self.to_local(hit.instance, ray), &shape_hit)
     }
+}
+
+/// Whether a ray may hit anything: those that lead nowhere would visit everything in vain.
+#[inline(always)]
+fn leads_somewhere(ray: &Ray, t_max: f32) -> bool {
+    let Vec3 { x, y, z } = ray.direction;
+    let is_finite = |v: Vec3| v.x.is_finite() & v.y.is_finite() & v.z.is_finite();
+    is_finite(ray.direction) & is_finite(ray.origin) & ((x != 0.0) | (y != 0.0) | (z != 0.0)) & (t_max > 0.0)
 }

@@ -3,5 +3,6 @@
 mod common;
 mod hierarchy;
 mod sampling;
+mod slots;
 mod surfaces;
 mod watertight;
