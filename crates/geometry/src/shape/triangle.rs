@@ -4,7 +4,7 @@ use crate::{
     mesh::is_degenerate,
     sample::{corner_weights, pdf_by_solid_angle},
 };
-use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma};
+use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, Vec3s, gamma};
 use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
 
 /// Solid angles outside this range are sampled by area: directions to smaller triangles lose their digits, and
@@ -431,6 +431,31 @@ impl ShearedTriangle {
         let inv_det = 1.0 / self.determinant();
         let t = ((e[0] * z[0] + e[1] * z[1]) + e[2] * z[2]) * inv_det;
         (ShapeHit { t, u: e[1] * inv_det, v: e[2] * inv_det }, is_in_front(t, v, z, inv_det))
+    }
+}
+
+/// A [`ShearedTriangle`] in each slot.
+#[derive(Copy, Clone, Debug, Default)]
+pub(crate) struct ShearedTriangles {
+    vertices: [Vec3s; 3],
+    edges: Vec3s,
+}
+
+impl ShearedTriangles {
+    #[inline(always)]
+    pub(crate) fn get(&self, slot: usize) -> ShearedTriangle {
+        let [a, b, c] = &self.vertices;
+        let vertices = [a.get(slot), b.get(slot), c.get(slot)];
+        ShearedTriangle { vertices, edges: self.edges.get(slot).to_array() }
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, slot: usize, triangle: &ShearedTriangle) {
+        let [a, b, c] = triangle.vertices;
+        self.vertices[0].set(slot, a);
+        self.vertices[1].set(slot, b);
+        self.vertices[2].set(slot, c);
+        self.edges.set(slot, triangle.edges.into());
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     Hit, InstanceId, Primitive, PrimitiveId, ShapeHit,
     bvh::{LONGER, RayCourses, padded},
     mesh::is_degenerate,
-    shape::{Ball, Parallelogram, RayShear, ShearedTriangle, permuted},
+    shape::{Ball, Parallelogram, RayShear, ShearedTriangle, ShearedTriangles, permuted},
 };
 use tenfold_math::{Bounds3, Floats, Id, Rays, Slots, Vec3, WIDTH, vectorized};
 
@@ -262,21 +262,21 @@ fn hit_triangle(
     found: &mut Found,
 ) {
     let [a, b, c] = *corners;
-    let sheared = |i: usize| {
-        let (axis, o) = (courses.axis[i], courses.origin.get(i));
-        let from_origin = [permuted(a, axis) - o, permuted(b, axis) - o, permuted(c, axis) - o];
-        ShearedTriangle::new(from_origin, courses.shear.get(i))
-    };
+    let mut triangles = ShearedTriangles::default();
     let mut inside = [false; WIDTH];
     for i in 0..WIDTH {
-        inside[i] = entered[i] & sheared(i).is_inside();
+        let (axis, o) = (courses.axis[i], courses.origin.get(i));
+        let from_origin = [permuted(a, axis) - o, permuted(b, axis) - o, permuted(c, axis) - o];
+        let triangle = ShearedTriangle::new(from_origin, courses.shear.get(i));
+        triangles.set(i, &triangle);
+        inside[i] = entered[i] & triangle.is_inside();
     }
     if inside == [false; WIDTH] {
         return;
     }
     let mut is_flat = [false; WIDTH];
     for i in 0..WIDTH {
-        let triangle = sheared(i);
+        let triangle = triangles.get(i);
         let (hit, is_in_front) = triangle.hit(courses.shear.z[i]);
         is_flat[i] = inside[i] & (triangle.determinant() == 0.0);
         found.take(i, hit, place, inside[i] & !is_flat[i] & is_in_front & (hit.t < found.t_max[i]));
