@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::SAMPLES;
-use crate::{LAMBDA_MAX, LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
+use super::{SAMPLES, dense_index};
+use crate::{LAMBDA_MAX, LAMBDA_MIN, N, SampledSpectrum, SampledWavelengths};
 
 /// Why points do not make a piecewise linear spectrum.
 #[derive(Copy, Clone, PartialEq, Eq, Debug, thiserror::Error)]
@@ -38,10 +38,26 @@ pub enum PiecewiseError {
 pub struct PiecewiseLinear {
     /// (wavelength in nm, value), by increasing wavelength.
     points: Arc<[[f32; 2]]>,
-    /// The slope from each point to the next; 0 after the last.
-    slopes: Arc<[f32]>,
-    /// For every whole nanometre of the rendered range the last point that is not beyond it, or the first: where to look for intervals.
+    /// The pieces of which all wavelengths are made up, also those outside the points, and an end that none reaches.
+    pieces: Arc<[Piece]>,
+    /// The piece in which the wavelengths begin whose nearest whole nanometre is this one of the rendered range.
     starts: Arc<[u32; SAMPLES]>,
+}
+
+/// A line over all wavelengths from the first on.
+#[derive(Copy, Clone, PartialEq, Debug)]
+struct Piece {
+    first: f32,
+    /// The value there.
+    value: f32,
+    slope: f32,
+}
+
+impl Piece {
+    /// Zero from a wavelength on.
+    fn zero(first: f32) -> Self {
+        Self { first, value: 0.0, slope: 0.0 }
+    }
 }
 
 impl PiecewiseLinear {
@@ -75,10 +91,19 @@ impl PiecewiseLinear {
 
     /// From points that have been checked.
     fn prepared(points: Vec<[f32; 2]>) -> Self {
-        let start = |i| interval(&points, LAMBDA_MIN + i as f32) as u32;
+        let mut pieces = vec![Piece::zero(f32::MIN)];
+        pieces.extend(points.windows(2).map(|p| {
+            let ([l0, v0], [l1, v1]) = (p[0], p[1]);
+            Piece { first: l0, value: v0, slope: (v1 - v0) / (l1 - l0) }
+        }));
+        if let Some(&[first, value]) = points.last() {
+            // The last point counts by itself.
+            pieces.extend([Piece { first, value, slope: 0.0 }, Piece::zero(first.next_up())]);
+        }
+        pieces.push(Piece::zero(f32::INFINITY));
+        let start = |i| piece_at(&pieces, LAMBDA_MIN - 0.5 + i as f32) as u32;
         let starts = Arc::new(std::array::from_fn(start));
-        let slopes = points.windows(2).map(|p| (p[1][1] - p[0][1]) / (p[1][0] - p[0][0])).chain([0.0]);
-        Self { starts, slopes: slopes.collect(), points: points.into() }
+        Self { starts, pieces: pieces.into(), points: points.into() }
     }
 
     /// The same with the end values held constant out to beyond the rendered range, where the points do not cover
@@ -107,26 +132,37 @@ impl PiecewiseLinear {
     /// Value at a wavelength in nm.
     #[inline]
     pub fn eval(&self, lambda: f32) -> f32 {
-        let p = &self.points;
-        let last = p.len() - 1;
-        if !(p[0][0]..=p[last][0]).contains(&lambda) {
-            return 0.0;
-        }
-        // The interval [i, i + 1] that holds lambda.
-        let i = match self.starts.get((lambda - LAMBDA_MIN) as usize) {
-            Some(&start) if lambda >= LAMBDA_MIN => {
-                let beyond = p[start as usize + 1..].iter().take_while(|q| q[0] <= lambda).count();
-                start as usize + beyond
-            }
-            _ => interval(p, lambda),
+        self.eval_near(dense_index(lambda), lambda)
+    }
+
+    /// Value at a wavelength in nm with this [`dense_index`].
+    #[inline]
+    fn eval_near(&self, nearest: usize, lambda: f32) -> f32 {
+        let pieces = &self.pieces;
+        let mut i = match self.starts.get(nearest) {
+            Some(&start) => start as usize,
+            None if lambda.is_finite() => piece_at(pieces, lambda),
+            None => return 0.0,
         };
-        p[i][1] + (lambda - p[i][0]) * self.slopes[i]
+        // Within a nanometre there is rarely more than one point, but on which side of it is not foreseen: no branch for that.
+        i += usize::from(pieces[i + 1].first <= lambda);
+        while pieces[i + 1].first <= lambda {
+            i += 1;
+        }
+        let Piece { first, value, slope } = pieces[i];
+        value + (lambda - first) * slope
     }
 
     /// Values at the wavelengths of a path.
     #[inline]
     pub fn sample(&self, w: &SampledWavelengths) -> SampledSpectrum {
-        SampledSpectrum::new(w.lambda().map(|lambda| self.eval(lambda)))
+        let (nearest, lambda) = (w.nearest(), w.lambda());
+        // A plain loop, which unlike a function for each lane is inlined.
+        let mut values = [0.0; N];
+        for lane in 0..N {
+            values[lane] = self.eval_near(nearest[lane], lambda[lane]);
+        }
+        SampledSpectrum::new(values)
     }
 
     /// Largest value of the points.
@@ -135,9 +171,9 @@ impl PiecewiseLinear {
     }
 }
 
-/// The index of the last of `points` that is not beyond `lambda`; 0 where all are.
-fn interval(points: &[[f32; 2]], lambda: f32) -> usize {
-    points.partition_point(|q| q[0] <= lambda).saturating_sub(1)
+/// The index of the last of `pieces` that does not begin beyond `lambda`.
+fn piece_at(pieces: &[Piece], lambda: f32) -> usize {
+    pieces.partition_point(|piece| piece.first <= lambda).saturating_sub(1)
 }
 
 #[cfg(test)]
