@@ -15,6 +15,7 @@ mod cone;
 mod hit;
 mod interaction;
 mod mesh;
+mod plain;
 mod sample;
 mod shape;
 mod subdivision;
@@ -25,10 +26,11 @@ pub use cone::NormalCone;
 pub use hit::{Candidate, Hit, InstanceId, PrimitiveId};
 pub use interaction::{SHADOW_T_MAX, Shading, SurfaceInteraction, ray_between};
 pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
+pub use plain::PlainSurfaces;
 pub use sample::{ReferencePoint, ReferencePoints, ShapeSample, ShapeSamples, SurfacePoint};
 pub use shape::{
     Ball, Balls, BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape,
     ShapeError, ShapeHit, Sphere, SphereParams, Triangle,
 };
 pub use subdivision::{SubdivisionError, loop_subdivide};
-pub use world::{FlatSurfaces, Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};
+pub use world::{Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};

@@ -38,10 +38,10 @@ impl Ball {
     }
 
     /// The unit normal outward at a ray parameter.
-    #[inline]
+    #[inline(always)]
     pub(super) fn outward(&self, ray: &Ray, t: f32) -> Vec3 {
         let p = self.ray(ray).at(f64::from(t));
-        (p * (1.0 / p.length())).as_vec3()
+        (p * (1.0 / p.length_squared().sqrt())).as_vec3()
     }
 
     /// The unit normal `outward` or inward, as the ball has it.

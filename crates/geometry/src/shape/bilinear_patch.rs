@@ -1,11 +1,12 @@
 use super::{Rectangle, ShapeHit, quadric::integrate, unit_cross};
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
+    plain::{PlainHits, PlainSurface, PlainSurfaces, flags},
     sample::pdf_by_solid_angle,
 };
 use glam::{DVec3, Vec3A};
 use std::ops::{Add, Mul};
-use tenfold_math::{Bounds3, Quat, Ray, Vec2, Vec3, gamma};
+use tenfold_math::{Bounds3, Quat, Ray, Slots, Vec2, Vec3, WIDTH, gamma, vectorized};
 use tenfold_sampling::warp::{bilinear_pdf, sample_bilinear};
 
 /// A bilinear patch of a mesh: `p(u, v)` interpolates four corners, given in the order 00, 10, 01, 11.
@@ -169,13 +170,26 @@ impl<'a> BilinearPatch<'a> {
         surface
     }
 
-    /// Derivatives of the parameters by the texture coordinates: `[∂(u,v)/∂s, ∂(u,v)/∂t]`; `None` without texture coordinates
-    /// or where they do not span the plane.
+    /// [`BilinearPatch::interaction`] at hits of a patch without normals of its own, in those of `slots` where its edges span a plane. Returns them.
+    pub(crate) fn plain_surfaces(&self, slots: Slots, at: &PlainHits, out: &mut PlainSurfaces) -> Slots {
+        let (corners, uvs) = (self.positions(), self.mesh.uvs(self.index));
+        let mut found = flags(slots);
+        plain_surfaces(
+            &corners,
+            self.mesh.flip,
+            &uvs.unwrap_or_default(),
+            uvs.is_some(),
+            at,
+            &mut found,
+            out,
+        );
+        slots.keep(|slot| found[slot])
+    }
+
+    /// [`texture_jacobian`] where the patch has texture coordinates that span the plane.
     fn texture_jacobian(&self, uv: Vec2) -> Option<[Vec2; 2]> {
-        let [du, dv] = derivatives(uv, self.mesh.uvs(self.index)?);
-        let determinant = du.perp_dot(dv);
-        let scale = 1.0 / determinant;
-        (determinant.abs() > 1e-12).then(|| [Vec2::new(dv.y, -du.y) * scale, Vec2::new(-dv.x, du.x) * scale])
+        let (spans, by_texture) = texture_jacobian(uv, self.mesh.uvs(self.index)?);
+        spans.then_some(by_texture)
     }
 
     /// Unit `∂p/∂u × ∂p/∂v`; where an edge has shrunk to a point, that of the middle.
@@ -191,7 +205,7 @@ impl<'a> BilinearPatch<'a> {
         let p = self.positions();
         ShapeSample {
             p: bilerp(uv, p),
-            p_error: gamma(6) * p.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs())),
+            p_error: point_error(p),
             n: self.orient(self.unit_normal(uv), uv),
             uv: self.texture_uv(uv),
             param: uv,
@@ -237,6 +251,55 @@ impl<'a> BilinearPatch<'a> {
             None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
         }
     }
+}
+
+vectorized! {
+    /// Surfaces of a patch without normals of its own, in the slots that are `found`: it stays so where the edges span a plane. `uvs` count where it
+    /// `has_uvs`.
+    fn plain_surfaces(
+        corners: &[Vec3; 4],
+        flip: bool,
+        uvs: &[Vec2; 4],
+        has_uvs: bool,
+        at: &PlainHits,
+        found: &mut [bool; WIDTH],
+        out: &mut PlainSurfaces,
+    ) {
+        let p_error = point_error(*corners);
+        for i in 0..WIDTH {
+            let uv = Vec2::new(at.u[i], at.v[i]);
+            let [dpdu, dpdv] = derivatives(uv, *corners);
+            let n = unit_cross(dpdu, dpdv).unwrap_or_default();
+            let (spans, [by_s, _]) = texture_jacobian(uv, *uvs);
+            let dpds = dpdu * by_s.x + dpdv * by_s.y;
+            let surface = PlainSurface {
+                p: bilerp(uv, *corners),
+                p_error,
+                n: if flip { -n } else { n },
+                uv: if has_uvs { bilerp(uv, *uvs) } else { uv },
+                dpdu: if has_uvs & spans { dpds } else { dpdu },
+            };
+            found[i] &= (n.x != 0.0) | (n.y != 0.0) | (n.z != 0.0);
+            out.set_if(found[i], i, surface);
+        }
+    }
+}
+
+/// Derivatives of the parameters by the texture coordinates that have the values `uvs` at the corners: `[∂(u,v)/∂s, ∂(u,v)/∂t]`, and whether they
+/// span the plane.
+#[inline(always)]
+fn texture_jacobian(uv: Vec2, uvs: [Vec2; 4]) -> (bool, [Vec2; 2]) {
+    let [du, dv] = derivatives(uv, uvs);
+    let determinant = du.perp_dot(dv);
+    let scale = 1.0 / determinant;
+    let by_texture = [Vec2::new(dv.y, -du.y) * scale, Vec2::new(-dv.x, du.x) * scale];
+    (determinant.abs() > 1e-12, by_texture)
+}
+
+/// Bound on the error of points of the patch with these corners.
+#[inline(always)]
+fn point_error(corners: [Vec3; 4]) -> Vec3 {
+    gamma(6) * corners.iter().fold(Vec3::ZERO, |m, p| m.max(p.abs()))
 }
 
 /// The derivatives of the unit normal by u and v from those of the position, where `twist` is the part along the normal of the mixed
@@ -359,7 +422,7 @@ fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
 }
 
 /// Bilinear interpolation of values at the corners 00, 10, 01, 11.
-#[inline]
+#[inline(always)]
 pub(super) fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(
     uv: Vec2,
     [x00, x10, x01, x11]: [T; 4],
@@ -371,7 +434,7 @@ pub(super) fn bilerp<T: Copy + Mul<f32, Output = T> + Add<Output = T>>(
 }
 
 /// Derivatives by u and v of [`bilerp`].
-#[inline]
+#[inline(always)]
 fn derivatives<T>(uv: Vec2, [x00, x10, x01, x11]: [T; 4]) -> [T; 2]
 where
     T: Copy + Mul<f32, Output = T> + Add<Output = T> + std::ops::Sub<Output = T>,

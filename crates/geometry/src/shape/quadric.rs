@@ -100,6 +100,7 @@ pub(super) struct ObjectRay {
 }
 
 impl ObjectRay {
+    #[inline(always)]
     pub(super) fn at(&self, t: f64) -> DVec3 {
         self.o + t * self.d
     }

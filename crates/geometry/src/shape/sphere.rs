@@ -4,11 +4,14 @@ use super::{
     quadric::{ObjectRay, Placement, azimuth, check_finite, integrate, roots},
 };
 use crate::{
-    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, sample::pdf_by_solid_angle,
+    NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint,
+    plain::{PlainHits, PlainSurface, PlainSurfaces, flags},
+    sample::pdf_by_solid_angle,
 };
+use glam::Mat3;
 use std::f32::consts::TAU;
 use tenfold_math::ops;
-use tenfold_math::{Bounds3, Ray, Transform, Vec2, Vec3, gamma};
+use tenfold_math::{Bounds3, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH, gamma, vectorized};
 
 /// What a [`Sphere`] is made from; the default is the whole unit sphere.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -121,7 +124,7 @@ impl Sphere {
 
     /// The sphere as a ball, where it is one.
     #[inline]
-    pub(super) fn ball(&self) -> Option<&Ball> {
+    pub(crate) fn ball(&self) -> Option<&Ball> {
         self.round.as_ref()
     }
 
@@ -159,13 +162,18 @@ impl Sphere {
         self.off_pole(self.placement.to_world.inverse_affine().transform_vector3(ball.radius * outward))
     }
 
-    /// An object-space point and its azimuth, which the poles do not have: off the pole.
+    /// An object-space point off the pole, which has no azimuth, and its azimuth.
     #[inline]
-    fn off_pole(&self, mut p: Vec3) -> (Vec3, f32) {
-        if p.x == 0.0 && p.y == 0.0 {
-            p.x = 1e-5 * self.radius;
-        }
+    fn off_pole(&self, p: Vec3) -> (Vec3, f32) {
+        let p = self.beside_pole(p);
         (p, azimuth(p))
+    }
+
+    /// An object-space point, moved off the pole where it is there.
+    #[inline(always)]
+    fn beside_pole(&self, p: Vec3) -> Vec3 {
+        let is_pole = (p.x == 0.0) & (p.y == 0.0);
+        Vec3::new(if is_pole { 1e-5 * self.radius } else { p.x }, p.y, p.z)
     }
 
     fn is_cut_away(&self, p: Vec3, phi: f32) -> bool {
@@ -203,7 +211,7 @@ impl Sphere {
         Vec2::new(phi / self.phi_max, (theta - self.theta_z_min) / (self.theta_z_max - self.theta_z_min))
     }
 
-    pub(super) fn uv(&self, ray: &Ray, hit: &ShapeHit) -> Vec2 {
+    pub(crate) fn uv(&self, ray: &Ray, hit: &ShapeHit) -> Vec2 {
         let (p, phi) = match &self.round {
             Some(ball) => self.surface_of_ball(ball, ball.outward(ray, hit.t)),
             None => self.surface(&self.placement.ray(ray), f64::from(hit.t)),
@@ -217,8 +225,7 @@ impl Sphere {
         let (phi_max, theta_range) = (self.phi_max, self.theta_z_max - self.theta_z_min);
         let z_radius = (p.x * p.x + p.y * p.y).sqrt();
         let (cos_phi, sin_phi) = (p.x / z_radius, p.y / z_radius);
-        let dpdu = Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0);
-        [dpdu, theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius)]
+        [eastward(phi_max, p), theta_range * Vec3::new(p.z * cos_phi, p.z * sin_phi, -z_radius)]
     }
 
     pub(super) fn interaction(&self, ray: &Ray, hit: &ShapeHit) -> SurfaceInteraction {
@@ -247,6 +254,13 @@ impl Sphere {
             derivatives,
             ray,
         ))
+    }
+
+    /// [`Sphere::interaction`] at hits of a sphere that is a ball, in `slots`, without texture coordinates.
+    pub(crate) fn plain_surfaces(&self, slots: Slots, rays: &Rays, at: &PlainHits, out: &mut PlainSurfaces) {
+        let (Some(ball), to_world) = (&self.round, &self.placement.to_world) else { return };
+        let (to_object, to_world) = (to_world.inverse_affine().matrix3, to_world.affine().matrix3);
+        plain_surfaces(self, ball, &to_object.into(), &to_world.into(), rays, at, &flags(slots), out);
     }
 
     pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {
@@ -294,6 +308,40 @@ impl Sphere {
         match self.round.and_then(|ball| ball.seen_from(reference)) {
             Some(cone) => cone.pdf(),
             None => pdf_by_solid_angle(self.pdf_area(point), point.p - reference.p, point.n),
+        }
+    }
+}
+
+/// The derivative by u of an object-space point, where the azimuth is u times `phi_max`.
+#[inline(always)]
+fn eastward(phi_max: f32, p: Vec3) -> Vec3 {
+    Vec3::new(-phi_max * p.y, phi_max * p.x, 0.0)
+}
+
+vectorized! {
+    /// Surfaces of a sphere that is `ball`, in the slots that are `found`, without texture coordinates.
+    fn plain_surfaces(
+        sphere: &Sphere,
+        ball: &Ball,
+        to_object: &Mat3,
+        to_world: &Mat3,
+        rays: &Rays,
+        at: &PlainHits,
+        found: &[bool; WIDTH],
+        out: &mut PlainSurfaces,
+    ) {
+        for i in 0..WIDTH {
+            let outward = ball.outward(&rays.get(i), at.t[i]);
+            let object = sphere.beside_pole(*to_object * (ball.radius * outward));
+            let [p, p_error] = ball.point(outward);
+            let surface = PlainSurface {
+                p,
+                p_error,
+                n: ball.normal(outward),
+                uv: Vec2::ZERO,
+                dpdu: *to_world * eastward(sphere.phi_max, object),
+            };
+            out.set_if(found[i], i, surface);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Everything that rays can hit, immutable once built.
 
 mod few;
-mod flat;
 mod hierarchies;
+mod plain;
 mod search;
 
 use crate::{
@@ -11,7 +11,6 @@ use crate::{
     interaction::toward_origin,
 };
 use few::Few;
-pub use flat::FlatSurfaces;
 use hierarchies::Hierarchies;
 use search::{Search, State};
 use tenfold_math::{Bounds3, Floats, Id, Motion, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH};

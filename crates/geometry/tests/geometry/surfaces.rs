@@ -452,23 +452,58 @@ fn parallelograms_are_hit_where_they_are() {
     }
 }
 
-/// What is told of flat triangles side by side is what is told of each alone, to the bit; of all else nothing is.
+/// A shape in a small world, and whether its surfaces are told side by side: all but those with shading frames of their own.
+fn plain_or_not(kind: usize, reverse: bool, rng: &mut Rng) -> (Shape, bool) {
+    let t = random_similarity(rng, 0.1);
+    match kind {
+        0..=3 => {
+            let parts = MeshParts {
+                positions: (0..9).map(|_| in_box(rng, 1.0)).collect(),
+                indices: (0..9).collect(),
+                uvs: (kind == 2).then(|| (0..9).map(|_| rng.vec2()).collect()),
+                normals: (kind == 3).then(|| (0..9).map(|_| rng.direction()).collect()),
+                face_indices: Some(vec![7, 8, 9]),
+                ..MeshParts::default()
+            };
+            let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, reverse).unwrap();
+            (Shape::Triangles(Arc::new(mesh)), kind < 2)
+        }
+        // Parallelograms, and patches that are twisted, that end in a point, with texture coordinates (also mirrored ones) and with normals.
+        4..=8 => {
+            let [a, b, c] = [(); 3].map(|()| in_box(rng, 1.0));
+            let fourth = if kind == 4 { b + (c - a) } else { in_box(rng, 1.0) };
+            let c = if kind == 5 { a } else { c };
+            let parts = MeshParts {
+                positions: vec![a, b, c, fourth],
+                indices: vec![0, 1, 2, 3],
+                uvs: (kind != 6).then(|| (0..4).map(|_| rng.vec2()).collect()),
+                normals: (kind == 8).then(|| vec![rng.direction(); 4]),
+                face_indices: Some(vec![7]),
+                ..MeshParts::default()
+            };
+            let mesh = BilinearMesh::new(parts, &Transform::IDENTITY, reverse).unwrap();
+            (Shape::Patches(Arc::new(mesh)), kind < 8)
+        }
+        9 => (Shape::Sphere(Sphere::new(t, reverse, SphereParams::whole(0.7)).unwrap()), true),
+        10 => {
+            let part = SphereParams { z_max: 0.3, ..SphereParams::whole(0.7) };
+            (Shape::Sphere(Sphere::new(t, reverse, part).unwrap()), false)
+        }
+        _ => (Shape::Disk(Disk::new(t, reverse, DiskParams::default()).unwrap()), false),
+    }
+}
+
+/// What is told of plain surfaces side by side is what is told of each alone, to the bit; of all else nothing is.
 #[test]
-fn flat_surfaces_are_those_of_interactions() {
+fn plain_surfaces_are_those_of_interactions() {
     let mut rng = Rng::new(31);
-    let (mut flat, mut others) = (0, 0);
-    for round in 0..60 {
-        let (kind, reverse) = (round % 4, round % 2 == 0);
-        let parts = MeshParts {
-            positions: (0..9).map(|_| in_box(&mut rng, 1.0)).collect(),
-            indices: (0..9).collect(),
-            uvs: (kind == 2).then(|| (0..9).map(|_| rng.vec2()).collect()),
-            normals: (kind == 3).then(|| (0..9).map(|_| rng.direction()).collect()),
-            face_indices: Some(vec![7, 8, 9]),
-            ..MeshParts::default()
-        };
-        let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, reverse).unwrap();
-        let geometries = vec![still(Shape::Triangles(Arc::new(mesh)), 0)];
+    let mut counts = [0; 12];
+    for round in 0..600 {
+        // One shape, or two of which rays see both.
+        let kinds = [round % 12, (round / 24) % 12];
+        let shapes = kinds.map(|kind| plain_or_not(kind, (round / 12) % 2 == 0, &mut rng));
+        let is_plain = shapes.clone().map(|(_, is_plain)| is_plain);
+        let geometries = shapes.into_iter().map(|(shape, _)| still(shape, 0)).collect();
         let world = World::build(WorldDesc { geometries, ..WorldDesc::default() }).unwrap();
         let mut rays = Rays::default();
         for slot in 0..WIDTH {
@@ -477,22 +512,53 @@ fn flat_surfaces_are_those_of_interactions() {
             rays.set(slot, Ray::new(origin, direction, 0.0));
         }
         let hits = std::array::from_fn(|slot| world.intersect(&rays.get(slot), f32::INFINITY, |_| true));
-        let mut surfaces = FlatSurfaces::default();
-        let found = world.flat_surfaces(Slots::first(WIDTH), &rays, &hits, &mut surfaces);
+        let textured = Slots::first(8);
+        let mut surfaces = PlainSurfaces::default();
+        let found = world.plain_surfaces(Slots::first(WIDTH), textured, &rays, &hits, &mut surfaces);
         for slot in 0..WIDTH {
-            assert_eq!(found.contains(slot), kind < 2 && hits[slot].is_some());
-            let Some(hit) = &hits[slot] else { continue };
-            if kind >= 2 {
-                others += 1;
+            let Some(hit) = &hits[slot] else {
+                assert!(!found.contains(slot));
+                continue;
+            };
+            let which = hit.primitive.geometry.index();
+            let kind = kinds[which];
+            if !found.contains(slot) {
+                // Single hits of patches and spheres may be left out.
+                let same = hits.iter().flatten().filter(|other| other.primitive == hit.primitive).count();
+                assert!(!is_plain[which] || (kind > 3 && same < 2));
                 continue;
             }
-            flat += 1;
+            assert!(is_plain[which], "{kind}");
+            counts[kind] += 1;
             let alone = world.interaction(&rays.get(slot), hit);
             assert_eq!((surfaces.p.get(slot), surfaces.p_error.get(slot)), (alone.p, alone.p_error));
             assert_eq!((surfaces.n.get(slot), surfaces.n.get(slot)), (alone.n, alone.shading.n));
-            assert_eq!((surfaces.uv.get(slot), surfaces.dpdu.get(slot)), (alone.uv, alone.shading.dpdu));
+            assert_eq!(surfaces.dpdu.get(slot), alone.shading.dpdu);
             assert_eq!((surfaces.wo.get(slot), surfaces.face_index[slot]), (alone.wo, alone.face_index));
+            if kind != 9 || textured.contains(slot) {
+                assert_eq!(surfaces.uv.get(slot), alone.uv);
+            }
         }
     }
-    assert!(flat > 100 && others > 100, "{flat} {others}");
+    let plain = [0, 1, 4, 5, 6, 7, 9];
+    assert!(plain.iter().all(|&kind| counts[kind] > 100), "{counts:?}");
+}
+
+/// A patch of which an edge is a point has no normal there by itself: such hits are left to others.
+#[test]
+fn surfaces_without_a_plane_are_left_out() {
+    let parts = MeshParts {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::ZERO, Vec3::X],
+        indices: vec![0, 1, 2, 3],
+        ..MeshParts::default()
+    };
+    let mesh = BilinearMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+    let geometries = vec![still(Shape::Patches(Arc::new(mesh)), 0)];
+    let world = World::build(WorldDesc { geometries, ..WorldDesc::default() }).unwrap();
+    let primitive = PrimitiveId { geometry: Id::new(0), index: 0 };
+    let hit = Hit { t: 1.0, u: 0.5, v: 0.5, primitive, instance: InstanceId::NONE };
+    let mut surfaces = PlainSurfaces::default();
+    let slots = Slots::first(WIDTH);
+    let found = world.plain_surfaces(slots, slots, &Rays::default(), &[Some(hit); WIDTH], &mut surfaces);
+    assert!(found.is_empty());
 }

@@ -15,7 +15,7 @@ use crate::{
     scene::Surface,
     texture::TextureContext,
 };
-use tenfold_geometry::{Candidate, FlatSurfaces, Hit, PrimitiveId, ReferencePoint, SurfaceInteraction};
+use tenfold_geometry::{Candidate, Hit, PlainSurfaces, PrimitiveId, ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Frame, Id, Ray, Slots, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, Variable, hash};
 use tenfold_spectrum::SampledSpectrum;
@@ -55,14 +55,14 @@ impl<'a> PathTracer<'a> {
         hits: &[Option<Hit>; WIDTH],
         samples: &[Sample<'_>],
         wave: &mut Wave<'a>,
-        surfaces: &mut FlatSurfaces,
+        surfaces: &mut PlainSurfaces,
         vertices: &mut Vertices,
     ) -> Slots {
         let scene = self.scene;
         if scene.needs_footprint {
             return Slots::NONE;
         }
-        let (mut ended, mut candidates) = (Slots::NONE, Slots::NONE);
+        let (mut ended, mut candidates, mut textured) = (Slots::NONE, Slots::NONE, Slots::NONE);
         for slot in live {
             let Some(hit) = &hits[slot] else { continue };
             let look = self.look(hit.primitive);
@@ -74,10 +74,13 @@ impl<'a> PathTracer<'a> {
                 ended.insert(slot);
             } else if scene.materials.is_plain(look.material) {
                 candidates.insert(slot);
+                if scene.materials.is_textured(look.material) {
+                    textured.insert(slot);
+                }
             }
         }
-        let flat = scene.world.flat_surfaces(candidates, &wave.rays, hits, surfaces);
-        for slot in flat {
+        let plain = scene.world.plain_surfaces(candidates, textured, &wave.rays, hits, surfaces);
+        for slot in plain {
             let Some(hit) = &hits[slot] else { continue };
             let at = TextureContext {
                 p: surfaces.p.get(slot),
@@ -100,7 +103,7 @@ impl<'a> PathTracer<'a> {
             wave.bsdfs[slot] = bxdf.map(|bxdf| self.at_work(Bsdf::new(frame, bxdf), sample));
             self.arrive(slot, from, wo, wave, vertices);
         }
-        ended.or(flat)
+        ended.or(plain)
     }
 
     /// The albedo of what scatters as an even reflector, by its own density.

@@ -1,6 +1,6 @@
 use super::{Strategies, path::Waiting, spectral::DispersionRule, wave::Wave, weights::Scattering};
 use crate::{light::LightSamples, scene::Scene};
-use tenfold_geometry::{FlatSurfaces, RayCourses};
+use tenfold_geometry::{PlainSurfaces, RayCourses};
 use tenfold_math::Rays;
 use tenfold_sampling::{PixelSample, SampleGroup};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths, Spectra};
@@ -63,7 +63,7 @@ impl<'s> Sample<'s> {
 pub struct Workspace<'a> {
     pub(super) wave: Wave<'a>,
     pub(super) courses: RayCourses,
-    pub(super) surfaces: FlatSurfaces,
+    pub(super) surfaces: PlainSurfaces,
     pub(super) lights: LightSamples,
     pub(super) scattering: Scattering,
     pub(super) arriving: Spectra,

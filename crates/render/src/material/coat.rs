@@ -41,6 +41,14 @@ impl Coat {
         self.albedo.constant().is_some_and(|s| s.max_value() <= 0.0)
     }
 
+    /// Whether anything of it varies over a surface.
+    pub(super) fn is_textured(&self) -> bool {
+        let Self { roughness, thickness, albedo, g, .. } = self;
+        roughness.constant().is_none()
+            || thickness.constant().and(g.constant()).is_none()
+            || albedo.constant().is_none()
+    }
+
     /// The coat over `base` at a point, by random walks.
     fn over(&self, at: &Point<'_>, eta: SampledSpectrum, base: LayeredBase) -> Bxdf<'static> {
         let slab = Slab {

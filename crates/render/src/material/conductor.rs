@@ -34,6 +34,14 @@ pub(super) struct ComplexIndex {
 }
 
 impl Metal {
+    /// Whether it varies over a surface.
+    pub(super) fn is_textured(&self) -> bool {
+        match self {
+            Self::Index { eta, k } => eta.constant().and(k.constant()).is_none(),
+            Self::Reflectance(r) => r.constant().is_none(),
+        }
+    }
+
     /// The index at a point.
     #[inline]
     pub(super) fn index(&self, at: &Point<'_>) -> ComplexIndex {

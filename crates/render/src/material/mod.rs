@@ -59,6 +59,8 @@ pub struct Materials {
     all: Vec<Material>,
     /// The relief of each.
     reliefs: Vec<Relief>,
+    /// Whether each is textured, its relief not counted.
+    textured: Vec<bool>,
 }
 
 /// The wavelengths at which a material is evaluated.
@@ -124,9 +126,30 @@ impl Material {
     }
 }
 
+impl Material {
+    /// Whether anything of it varies over a surface.
+    fn is_textured(&self) -> bool {
+        match self {
+            Self::Diffuse(m) => m.reflectance.constant().is_none(),
+            Self::DiffuseTransmission(m) => {
+                m.reflectance.constant().and(m.transmittance.constant()).is_none()
+            }
+            Self::Conductor(m) => m.metal.is_textured() || m.roughness.constant().is_none(),
+            Self::Dielectric(m) => m.roughness.constant().is_none(),
+            Self::CoatedDiffuse(m) => m.reflectance.constant().is_none() || m.coat.is_textured(),
+            Self::CoatedConductor(m) => {
+                m.metal.is_textured() || m.roughness.constant().is_none() || m.coat.is_textured()
+            }
+            Self::Mix(_) => true,
+            Self::ThinDielectric(_) | Self::Interface => false,
+        }
+    }
+}
+
 impl Materials {
     /// Adds a material.
     pub fn add(&mut self, material: Material, relief: Relief) -> Id<Material> {
+        self.textured.push(material.is_textured());
         self.all.push(material);
         self.reliefs.push(relief);
         Id::new(self.all.len() - 1)
@@ -134,6 +157,7 @@ impl Materials {
 
     /// Replaces a material: for those that others named before they were known.
     pub fn set(&mut self, id: Id<Material>, material: Material, relief: Relief) {
+        self.textured[id.index()] = material.is_textured();
         self.all[id.index()] = material;
         self.reliefs[id.index()] = relief;
     }
@@ -196,6 +220,12 @@ impl Materials {
     #[inline]
     pub fn is_plain(&self, id: Id<Material>) -> bool {
         !self.may_be_interface(id) && matches!(self.reliefs[id.index()], Relief::Smooth)
+    }
+
+    /// Whether textures tell more of it than its relief.
+    #[inline]
+    pub fn is_textured(&self, id: Id<Material>) -> bool {
+        self.textured[id.index()]
     }
 
     /// The scattering function of a plain surface in its frame, at a point as textures see it; `None` where it takes more to tell.
