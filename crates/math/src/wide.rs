@@ -53,6 +53,12 @@ impl Slots {
         self.0.count_ones() as usize
     }
 
+    /// Of each slot, whether it is among them.
+    #[inline]
+    pub fn flags(self) -> [bool; WIDTH] {
+        std::array::from_fn(|slot| self.contains(slot))
+    }
+
     /// Those for which `is_kept` holds.
     #[inline]
     #[must_use]

@@ -1,8 +1,8 @@
 use tenfold_math::{Vec2, Vec3};
-use tenfold_spectrum::SampledSpectrum;
+use tenfold_spectrum::{N, SampledSpectrum};
 
-use super::fresnel::fresnel_conductor;
-use super::local::{reflect, reflect_local, same_hemisphere};
+use super::fresnel::{fresnel_conductor, fresnel_conductor_lanes};
+use super::local::{reflect, reflect_local};
 use super::microfacet::TrowbridgeReitz;
 use super::record::{BsdfSample, Lobe, Scattering};
 
@@ -32,6 +32,12 @@ impl Conductor {
         self.distribution.effectively_smooth()
     }
 
+    /// Index of refraction, real and imaginary part.
+    #[inline]
+    pub(crate) fn index(&self) -> [SampledSpectrum; 2] {
+        [self.eta, self.k]
+    }
+
     /// Reflectance at the cosine `cos_i` to a microfacet.
     #[inline]
     pub(crate) fn fresnel(&self, cos_i: f32) -> SampledSpectrum {
@@ -45,23 +51,11 @@ impl Conductor {
 
     #[inline]
     pub(crate) fn scattering(&self, wo: Vec3, wi: Vec3) -> Scattering<SampledSpectrum> {
-        if self.is_smooth() || !same_hemisphere(wo, wi) {
+        if self.is_smooth() {
             return Scattering::ZERO;
         }
-        let half = wo + wi;
-        let length = half.length();
-        if length == 0.0 {
-            return Scattering::ZERO;
-        }
-        let m = half / length;
-        let cos = wo.dot(m).abs();
-        if cos == 0.0 {
-            return Scattering::ZERO;
-        }
-        Scattering {
-            f: self.fresnel(cos) * self.distribution.d_g2_over_4_cos_cos(m, wo, wi),
-            pdf: SampledSpectrum::splat(self.distribution.visible_pdf(wo, m) / (4.0 * cos)),
-        }
+        let (f, pdf) = rough(self.distribution, self.eta.to_array(), self.k.to_array(), wo, wi);
+        Scattering { f: SampledSpectrum::new(f), pdf: SampledSpectrum::splat(pdf) }
     }
 
     #[inline]
@@ -77,4 +71,19 @@ impl Conductor {
         let lobe = Lobe::REFLECTION | Lobe::GLOSSY;
         (pdf.lane(0) > 0.0).then_some(BsdfSample { f, wi, pdf, lobe, eta: 1.0, dispersive: false })
     }
+}
+
+/// The BRDF of a rough metal of index `eta + i·k` per lane, and the density of reflection about visible normals.
+#[inline(always)]
+pub(crate) fn rough(
+    distribution: TrowbridgeReitz,
+    eta: [f32; N],
+    k: [f32; N],
+    wo: Vec3,
+    wi: Vec3,
+) -> ([f32; N], f32) {
+    let mirror = distribution.mirror(wo, wi);
+    let exists = mirror.cos != 0.0;
+    let fresnel = fresnel_conductor_lanes(mirror.cos.abs(), eta, k);
+    (fresnel.map(|f| if exists { f * mirror.value } else { 0.0 }), if exists { mirror.pdf } else { 0.0 })
 }

@@ -2,8 +2,8 @@ use tenfold_math::{Vec2, Vec3};
 use tenfold_spectrum::SampledSpectrum;
 
 use super::fresnel::{fresnel_dielectric, fresnel_dielectric_lanes};
-use super::interface::Interface;
-use super::local::{reflect, reflect_local, refract, refract_local, same_hemisphere};
+use super::interface::{Interface, InterfaceDirection};
+use super::local::{reflect_local, refract_local, same_hemisphere};
 use super::microfacet::TrowbridgeReitz;
 use super::record::{BsdfSample, Lobe, Scattering};
 
@@ -89,17 +89,18 @@ impl Dielectric {
     /// reflectance of the microfacet. Zero where the boundary is smooth.
     #[inline]
     pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3) -> MicrofacetReflection {
-        let none = MicrofacetReflection { fresnel: SampledSpectrum::ZERO, unit: 0.0, visible_pdf: 0.0 };
-        let Some(m) = Interface::reflecting_normal(wo, wi) else { return none };
-        let cos = wo.dot(m);
-        if self.smooth || cos <= 0.0 {
-            return none;
+        let mirror = self.distribution.mirror(wo, wi);
+        if self.smooth || mirror.cos <= 0.0 {
+            return MicrofacetReflection { fresnel: SampledSpectrum::ZERO, unit: 0.0, visible_pdf: 0.0 };
         }
-        MicrofacetReflection {
-            fresnel: self.fresnel(wo, cos),
-            unit: self.distribution.d_g2_over_4_cos_cos(m, wo, wi),
-            visible_pdf: self.distribution.visible_pdf(wo, m) / (4.0 * cos),
-        }
+        let fresnel = self.fresnel(wo, mirror.cos);
+        MicrofacetReflection { fresnel, unit: mirror.value, visible_pdf: mirror.pdf }
+    }
+
+    /// The boundary in one lane.
+    #[inline]
+    fn interface(&self, lane: usize) -> Interface {
+        Interface::new(self.eta.lane(lane), self.distribution)
     }
 
     #[inline]
@@ -107,30 +108,21 @@ impl Dielectric {
         if self.smooth {
             return Scattering::ZERO;
         }
+        if !self.dispersive {
+            let Scattering { f, pdf } = self.interface(0).radiance(wo, wi);
+            return Scattering { f: SampledSpectrum::splat(f), pdf: SampledSpectrum::splat(pdf) };
+        }
         if same_hemisphere(wo, wi) {
             let r = self.reflection(wo, wi);
             return Scattering { f: r.fresnel * r.unit, pdf: r.fresnel * r.visible_pdf };
         }
-        if !self.dispersive {
-            let Scattering { f, pdf } = self.transmission(wo, wi, 0);
-            return Scattering { f: SampledSpectrum::splat(f), pdf: SampledSpectrum::splat(pdf) };
-        }
         let mut all = Scattering::ZERO;
         for lane in 0..tenfold_spectrum::N {
-            let Scattering { f, pdf } = self.transmission(wo, wi, lane);
+            let Scattering { f, pdf } = self.interface(lane).radiance(wo, wi);
             all.f.set_lane(lane, f);
             all.pdf.set_lane(lane, pdf);
         }
         all
-    }
-
-    /// Transmission of radiance in one lane, and the density of sampling it with this lane as the hero.
-    #[inline]
-    fn transmission(&self, wo: Vec3, wi: Vec3, lane: usize) -> Scattering<f32> {
-        let interface = Interface::new(self.eta.lane(lane), self.distribution);
-        let (Scattering { f, pdf }, fresnel) = interface.transmission_and_fresnel(wo, wi);
-        let eta = interface.eta_from(wo);
-        Scattering { f: f / (eta * eta), pdf: pdf * (1.0 - fresnel) }
     }
 
     #[inline]
@@ -138,12 +130,9 @@ impl Dielectric {
         if self.smooth {
             return self.sample_smooth(wo, u_lobe, hero);
         }
-        let eta = self.eta_from(wo).lane(hero);
-        let m = self.distribution.sample_visible(wo, u);
-        let reflected = u_lobe < fresnel_dielectric(wo.dot(m).abs(), eta);
-        let wi = if reflected { reflect(wo, m) } else { refract(wo, m, eta)? };
-        // Light reflected to below, or refracted to above, would have to meet the surface again.
-        if wi.z == 0.0 || same_hemisphere(wo, wi) != reflected {
+        let interface = self.interface(hero);
+        let InterfaceDirection { wi, reflected, exists } = interface.sample(wo, u_lobe, u);
+        if !exists {
             return None;
         }
         let Scattering { f, pdf } = self.scattering(wo, wi);
@@ -153,7 +142,7 @@ impl Dielectric {
             wi,
             pdf,
             lobe: side | Lobe::GLOSSY,
-            eta: if reflected { 1.0 } else { eta },
+            eta: if reflected { 1.0 } else { interface.eta_from(wo) },
             dispersive: self.dispersive && !reflected,
         })
     }

@@ -1,23 +1,21 @@
 //! Reflectance of smooth boundaries for unpolarised light.
 
 use tenfold_math::Vec4;
-use tenfold_spectrum::SampledSpectrum;
+use tenfold_spectrum::{N, SampledSpectrum};
 
 /// Reflectance of a boundary between dielectrics (Fresnel's equations; pbrt book, §9.3.5).
 ///
 /// `cos_i` is the cosine on the incident side, positive; `eta` the index of the far side over that of the
 /// incident side. 1 under total internal reflection.
-#[inline]
+#[inline(always)]
 pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
     let cos_i = cos_i.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return 1.0;
-    }
     let cos_t = (1.0 - sin2_t).sqrt();
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
+    let reflectance = 0.5 * (parallel * parallel + perpendicular * perpendicular);
+    if sin2_t >= 1.0 { 1.0 } else { reflectance }
 }
 
 /// [`fresnel_dielectric`] with an index for each lane.
@@ -27,7 +25,7 @@ pub fn fresnel_dielectric_lanes(cos_i: f32, eta: SampledSpectrum) -> SampledSpec
     let eta = eta.0;
     let sin2_t = Vec4::splat(1.0 - cos_i * cos_i) / (eta * eta);
     let total = sin2_t.cmpge(Vec4::ONE);
-    let cos_t = root(Vec4::ONE - sin2_t);
+    let cos_t = (Vec4::ONE - sin2_t).max(Vec4::ZERO).map(f32::sqrt);
     let cos_i = Vec4::splat(cos_i);
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
@@ -37,39 +35,47 @@ pub fn fresnel_dielectric_lanes(cos_i: f32, eta: SampledSpectrum) -> SampledSpec
 
 /// Reflectance of a boundary from a dielectric to an absorbing medium of complex index `eta + i·k`, both relative
 /// to the dielectric, per lane.
+#[inline(always)]
+pub fn fresnel_conductor(cos_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -> SampledSpectrum {
+    SampledSpectrum::new(fresnel_conductor_lanes(cos_i, eta.to_array(), k.to_array()))
+}
+
+/// [`fresnel_conductor`] of numbers that are not in a vector register.
 ///
 /// Fresnel's equations with a complex index, written in real numbers with `a² + b² = |η² - sin²θ|`
 /// (Born and Wolf 1999, §14.2).
-#[inline]
-pub fn fresnel_conductor(cos_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -> SampledSpectrum {
+#[inline(always)]
+pub(crate) fn fresnel_conductor_lanes(cos_i: f32, eta: [f32; N], k: [f32; N]) -> [f32; N] {
     let cos_i = cos_i.clamp(0.0, 1.0);
-    let cos2 = Vec4::splat(cos_i * cos_i);
-    let sin2 = Vec4::ONE - cos2;
-    let (eta, k) = (eta.0, k.0);
-    let real = eta * eta - k * k - sin2;
-    let imaginary = eta * k * 2.0;
-    let modulus = root(real * real + imaginary * imaginary);
-    let a = root((modulus + real) * 0.5);
-    let s_even = modulus + cos2;
-    let s_odd = a * (2.0 * cos_i);
-    let rs = quotient(s_even - s_odd, s_even + s_odd);
-    let p_even = cos2 * modulus + sin2 * sin2;
-    let p_odd = s_odd * sin2;
-    let rp = rs * quotient(p_even - p_odd, p_even + p_odd);
-    SampledSpectrum((rs + rp) * 0.5)
+    let cos2 = cos_i * cos_i;
+    let sin2 = 1.0 - cos2;
+    let reflectance = |lane: usize| {
+        let (eta, k) = (eta[lane], k[lane]);
+        let real = eta * eta - k * k - sin2;
+        let imaginary = eta * k * 2.0;
+        let modulus = root(real * real + imaginary * imaginary);
+        let a = root((modulus + real) * 0.5);
+        let s_even = modulus + cos2;
+        let s_odd = a * (2.0 * cos_i);
+        let rs = quotient(s_even - s_odd, s_even + s_odd);
+        let p_even = cos2 * modulus + sin2 * sin2;
+        let p_odd = s_odd * sin2;
+        let rp = rs * quotient(p_even - p_odd, p_even + p_odd);
+        (rs + rp) * 0.5
+    };
+    [reflectance(0), reflectance(1), reflectance(2), reflectance(3)]
 }
 
 /// Square root, of negative rounding errors 0.
-#[inline]
-fn root(v: Vec4) -> Vec4 {
-    v.max(Vec4::ZERO).map(f32::sqrt)
+#[inline(always)]
+fn root(x: f32) -> f32 {
+    x.max(0.0).sqrt()
 }
 
 /// Quotient, 1 where the divisor is 0 (grazing incidence on a medium of the same index).
-#[inline]
-fn quotient(a: Vec4, b: Vec4) -> Vec4 {
-    let zero = b.cmple(Vec4::ZERO);
-    Vec4::select(zero, Vec4::ONE, a / Vec4::select(zero, Vec4::ONE, b))
+#[inline(always)]
+fn quotient(a: f32, b: f32) -> f32 {
+    if b <= 0.0 { 1.0 } else { a / b }
 }
 
 #[cfg(test)]

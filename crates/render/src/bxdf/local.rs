@@ -3,19 +3,26 @@
 use tenfold_math::Vec3;
 
 /// Whether both directions, neither in the surface, leave the same side of it. Compares signs, as a product underflows.
-#[inline]
+#[inline(always)]
 pub(crate) fn same_hemisphere(a: Vec3, b: Vec3) -> bool {
     (a.z > 0.0) == (b.z > 0.0)
 }
 
+/// `a` or else `b`, without a branch.
+#[inline(always)]
+pub(crate) fn select(condition: bool, a: Vec3, b: Vec3) -> Vec3 {
+    let of = |a: f32, b: f32| if condition { a } else { b };
+    Vec3::new(of(a.x, b.x), of(a.y, b.y), of(a.z, b.z))
+}
+
 /// Mirror image of `wo` about the unit vector `n`; both point away from the surface.
-#[inline]
+#[inline(always)]
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
     n * (2.0 * wo.dot(n)) - wo
 }
 
 /// Mirror image of `wo` about the local normal.
-#[inline]
+#[inline(always)]
 pub(crate) fn reflect_local(wo: Vec3) -> Vec3 {
     Vec3::new(-wo.x, -wo.y, wo.z)
 }
@@ -23,16 +30,20 @@ pub(crate) fn reflect_local(wo: Vec3) -> Vec3 {
 /// Snell's law: the direction, pointing away from the surface, into which light from `wo` goes through a boundary
 /// with unit normal `n` on the side of `wo`. `eta` is the index of the far side over that of the side of `wo`.
 /// `None` under total internal reflection.
-#[inline]
+#[inline(always)]
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let (direction, refracts) = refraction(wo, n, eta);
+    refracts.then_some(direction)
+}
+
+/// [`refract`] without branches: the direction, and whether it is one.
+#[inline(always)]
+pub(crate) fn refraction(wo: Vec3, n: Vec3, eta: f32) -> (Vec3, bool) {
     let cos_i = wo.dot(n);
     let sin2_i = (1.0 - cos_i * cos_i).max(0.0);
     let sin2_t = sin2_i / (eta * eta);
-    if sin2_t >= 1.0 || cos_i < 0.0 {
-        return None;
-    }
     let cos_t = (1.0 - sin2_t).sqrt();
-    Some(n * (cos_i / eta - cos_t) - wo / eta)
+    (n * (cos_i / eta - cos_t) - wo / eta, (sin2_t < 1.0) & (cos_i >= 0.0))
 }
 
 /// [`refract`] through the local normal. Keeps the tangential components exact to rounding.

@@ -3,6 +3,8 @@ use tenfold_math::ops;
 
 use tenfold_math::{Vec2, Vec3};
 
+use super::local::{same_hemisphere, select};
+
 /// Least α: the distribution is no narrower than this in either direction unless it is smooth in both.
 const ALPHA_MIN: f32 = 1e-4;
 /// Below this α the surface counts as a perfect mirror.
@@ -16,6 +18,17 @@ const ALPHA_SMOOTH: f32 = 1e-3;
 pub struct TrowbridgeReitz {
     alpha_x: f32,
     alpha_y: f32,
+}
+
+/// Reflection of one direction to another by microfacets that are perfect mirrors; all 0 where none reflects so.
+#[derive(Copy, Clone, Debug)]
+pub(crate) struct Mirror {
+    /// Cosine between either direction and the normal of these microfacets.
+    pub(crate) cos: f32,
+    /// The BRDF: `D G₂ / (4 cos θo cos θi)`.
+    pub(crate) value: f32,
+    /// Density in solid angle of reflection about visible normals.
+    pub(crate) pdf: f32,
 }
 
 impl TrowbridgeReitz {
@@ -57,7 +70,7 @@ impl TrowbridgeReitz {
     }
 
     /// Density of microfacet normals D, per steradian and per area of the macrosurface (pbrt book, eq. 9.16).
-    #[inline]
+    #[inline(always)]
     pub fn d(&self, m: Vec3) -> f32 {
         let (x, y) = (m.x / self.alpha_x, m.y / self.alpha_y);
         let e = x * x + y * y + m.z * m.z;
@@ -65,61 +78,78 @@ impl TrowbridgeReitz {
     }
 
     /// `|cos θ| · (1 + 2 Λ(w))`, the length of `w` after stretching: Λ without its pole at the horizon.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn stretched(&self, w: Vec3) -> f32 {
         let (x, y) = (self.alpha_x * w.x, self.alpha_y * w.y);
         (w.z * w.z + x * x + y * y).sqrt()
     }
 
     /// Smith's Λ: masked over visible area of microfacets (pbrt book, eq. 9.20). Infinite at the horizon.
-    #[inline]
+    #[inline(always)]
     pub fn lambda(&self, w: Vec3) -> f32 {
         0.5 * (self.stretched(w) / w.z.abs() - 1.0)
     }
 
     /// Smith's masking G₁: the visible fraction of microfacet area from `w`.
-    #[inline]
+    #[inline(always)]
     pub fn g1(&self, w: Vec3) -> f32 {
         2.0 * w.z.abs() / (w.z.abs() + self.stretched(w))
     }
 
     /// Height-correlated masking and shadowing G₂ = 1 / (1 + Λ(wo) + Λ(wi)) (Heitz 2014, eq. 99), also for a
     /// transmission, as in pbrt-v4.
-    #[inline]
+    #[inline(always)]
     pub fn g2(&self, wo: Vec3, wi: Vec3) -> f32 {
         let (zo, zi) = (wo.z.abs(), wi.z.abs());
         2.0 * zo * zi / (zo * self.stretched(wi) + zi * self.stretched(wo))
     }
 
     /// `D(m) · G₂(wo, wi) / (4 |cos θo cos θi|)`, finite also at the horizon.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn d_g2_over_4_cos_cos(&self, m: Vec3, wo: Vec3, wi: Vec3) -> f32 {
         let sum = wo.z.abs() * self.stretched(wi) + wi.z.abs() * self.stretched(wo);
         if sum > 0.0 { 0.5 * self.d(m) / sum } else { 0.0 }
     }
 
     /// Density of the normals visible from `wo`, per steradian of `m` (Heitz 2014, eq. 16).
-    #[inline]
+    #[inline(always)]
     pub fn visible_pdf(&self, wo: Vec3, m: Vec3) -> f32 {
         2.0 * self.d(m) * wo.dot(m).abs() / (wo.z.abs() + self.stretched(wo))
+    }
+
+    /// Reflection by microfacets that are perfect mirrors.
+    #[inline(always)]
+    pub(crate) fn mirror(&self, wo: Vec3, wi: Vec3) -> Mirror {
+        let half = wo + wi;
+        let length = half.length_squared().sqrt();
+        let m = half / length;
+        let cos = wo.dot(m);
+        let exists = same_hemisphere(wo, wi) & (length > 0.0);
+        let of = |x: f32| if exists { x } else { 0.0 };
+        Mirror {
+            cos: of(cos),
+            value: of(self.d_g2_over_4_cos_cos(m, wo, wi)),
+            pdf: of(self.visible_pdf(wo, m) / (4.0 * cos.abs())),
+        }
     }
 
     /// Samples a normal with [`TrowbridgeReitz::visible_pdf`], on the side of `wo`: in the space where the surface
     /// is a hemisphere, reflected directions are uniform on a spherical cap (Dupuy and Benyoub 2023, listing 3). The very
     /// middle of the square, which chance does not hit, is sent to that of the lobe, for who freezes directions there.
-    #[inline]
+    #[inline(always)]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let sign = 1f32.copysign(wo.z);
-        if u == Vec2::splat(0.5) {
-            return Vec3::new(0.0, 0.0, sign);
-        }
         let w = Vec3::new(self.alpha_x * wo.x, self.alpha_y * wo.y, wo.z) * sign;
-        let w = w / w.length();
+        let w = w / w.length_squared().sqrt();
         // 1 - cos θ of the cap's point, so that nothing cancels near the pole and h.z cannot be negative.
         let t = u.y * (1.0 + w.z);
         let sin = (t * (2.0 - t)).max(0.0).sqrt();
-        let (s, c) = ops::sin_cos(TAU * u.x);
+        let (s, c) = ops::sin_cos_of_moderate(TAU * u.x);
         let h = Vec3::new(sin * c + w.x, sin * s + w.y, (1.0 - u.y) * (1.0 + w.z));
-        Vec3::new(h.x * self.alpha_x, h.y * self.alpha_y, h.z).normalize_or(Vec3::Z) * sign
+        let m = Vec3::new(h.x * self.alpha_x, h.y * self.alpha_y, h.z);
+        let scale = 1.0 / m.length_squared().sqrt();
+        let is_usable = (scale > 0.0) & (scale < f32::INFINITY);
+        let is_middle = (u.x == 0.5) & (u.y == 0.5);
+        select(is_usable & !is_middle, m * scale, Vec3::Z) * sign
     }
 }

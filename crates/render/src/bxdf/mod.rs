@@ -25,6 +25,7 @@ mod strategy;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
+mod wide;
 
 use tenfold_math::{Vec2, Vec3};
 use tenfold_spectrum::SampledSpectrum;
@@ -44,7 +45,11 @@ pub use record::{BsdfSample, Lobe};
 pub use strategy::ScatterStrategy;
 pub use thin_dielectric::ThinDielectric;
 
-use record::Scattering;
+pub(crate) use conductor::rough as rough_conductor;
+pub(crate) use interface::{Interface, InterfaceDirection};
+pub(crate) use record::Scattering;
+pub(crate) use wide::WideBxdf;
+
 use strategy::Hemispheres;
 
 /// Directions with a cosine below this lie in the surface: values over the cosine stay finite.

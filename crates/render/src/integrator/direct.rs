@@ -1,7 +1,7 @@
 //! Light from points sampled on lights.
 
 use super::{
-    PathTracer, Sample, Strategies, Workspace, even, passing::Chance, wave::Vertices, weights::weigh_sampled,
+    PathTracer, Sample, Strategies, Workspace, passing::Chance, wave::Vertices, weights::weigh_sampled,
 };
 use crate::bxdf::BsdfValue;
 use tenfold_geometry::Candidate;
@@ -21,7 +21,7 @@ impl<'a> PathTracer<'a> {
         let Workspace { wave, lights: light, courses, scattering, arriving, rays, .. } = workspace;
         let scene_lights = &self.scene.lights;
         let count = scene_lights.sampled(strategy);
-        let seeing = vertices.even.or(vertices.glossy);
+        let seeing = vertices.wide().or(vertices.glossy);
         if count == 0 || seeing.is_empty() {
             return;
         }
@@ -35,9 +35,9 @@ impl<'a> PathTracer<'a> {
         if lit.is_empty() {
             return;
         }
-        even::evaluate(&wave.even, &wave.wo, &light.wi, scattering);
+        wave.surfaces.evaluate(vertices, &wave.wo, &light.wi, scattering);
         let mut parts = [false; WIDTH];
-        for slot in lit.without(vertices.even) {
+        for slot in lit.without(vertices.wide()) {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };
             let wi = light.wi.get(slot);
             let BsdfValue { f, pdf } = bsdf.eval_and_pdf(wave.wo.get(slot), wi);

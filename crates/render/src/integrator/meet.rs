@@ -10,7 +10,7 @@ use super::{
     weights::Weights,
 };
 use crate::{
-    bxdf::{Bsdf, ScatterStrategy},
+    bxdf::{Bsdf, ScatterStrategy, WideBxdf},
     material::{Material, Waves},
     scene::Surface,
     texture::TextureContext,
@@ -18,7 +18,6 @@ use crate::{
 use tenfold_geometry::{Candidate, Hit, PlainSurfaces, PrimitiveId, ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Frame, Id, Ray, Slots, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, Variable, hash};
-use tenfold_spectrum::SampledSpectrum;
 
 /// Passing through this many interfaces ends a path: a bound for scenes with interfaces without end.
 const MOST_PASSES: u32 = 1024;
@@ -94,8 +93,8 @@ impl<'a> PathTracer<'a> {
             let (n, tangent, wo) = (at.n, surfaces.dpdu.get(slot), surfaces.wo.get(slot));
             let (p, p_error, time) = (at.p, surfaces.p_error.get(slot), wave.rays.time[slot]);
             let from = ReferencePoint { p, p_error, n, ns: n, one_sided: false, time };
-            if let Some(reflectance) = self.even_reflectance(material, &at, sample) {
-                wave.arrive_at_even(slot, from, wo, [n, tangent], reflectance, vertices);
+            if let Some(bxdf) = self.wide_bxdf(material, &at, sample) {
+                wave.arrive_at(slot, from, wo, [n, tangent], &bxdf, vertices);
                 continue;
             }
             let bxdf = scene.materials.bxdf(material, &scene.textures, &at, self.waves(sample));
@@ -106,19 +105,19 @@ impl<'a> PathTracer<'a> {
         ended.or(plain)
     }
 
-    /// The albedo of what scatters as an even reflector, by its own density.
+    /// The scattering function of a plain surface, where it is computed side by side and samples directions by its own density.
     #[inline]
-    fn even_reflectance(
+    fn wide_bxdf(
         &self,
         material: Id<Material>,
         at: &TextureContext,
         sample: &Sample<'_>,
-    ) -> Option<SampledSpectrum> {
+    ) -> Option<WideBxdf> {
         let scene = self.scene;
-        let by_itself = self.strategies.scatter == ScatterStrategy::Bsdf;
-        let reflectance =
-            || scene.materials.even_reflectance(material, &scene.textures, at, self.waves(sample));
-        by_itself.then(reflectance).flatten()
+        let by_itself = self.strategies.scatter == ScatterStrategy::Bsdf
+            && sample.sampler.held(Variable::ScatterDirection).is_none();
+        let bxdf = || scene.materials.wide_bxdf(material, &scene.textures, at, self.waves(sample));
+        by_itself.then(bxdf).flatten()
     }
 
     /// Puts the path in `slot` at a vertex where it scatters as [`Wave::bsdfs`] says.
@@ -180,9 +179,9 @@ impl<'a> PathTracer<'a> {
                 return;
             }
             let at = self.context(&surface);
-            if !at_end && let Some(reflectance) = self.even_reflectance(material, &at, sample) {
+            if !at_end && let Some(bxdf) = self.wide_bxdf(material, &at, sample) {
                 let axes = [surface.shading.n, surface.shading.dpdu];
-                wave.arrive_at_even(slot, surface.reference(), surface.wo, axes, reflectance, vertices);
+                wave.arrive_at(slot, surface.reference(), surface.wo, axes, &bxdf, vertices);
                 return;
             }
             wave.bsdfs[slot] = self.bsdf(path, &surface, &at, passes, sample);

@@ -7,15 +7,18 @@
 //! The paths of sixteen samples of a pixel take every step together ([`PathTracer::trace`]): they meet surfaces, find light, and scatter. What is the same for all of
 //! them is computed in vector instructions, the rest for one path after another; either way an estimate has the bits that it has alone.
 
+mod boundary;
 mod combine;
 mod direct;
 mod even;
 mod meet;
+mod metal;
 mod passing;
 mod path;
 mod scatter;
 mod spectral;
 mod strategies;
+mod surfaces;
 mod tracer;
 mod wave;
 mod weights;

@@ -1,7 +1,7 @@
 //! Where paths go on to, and whether.
 
 use super::{
-    PathTracer, Sample, Workspace, even,
+    PathTracer, Sample, Workspace,
     path::{Path, Waiting},
     spectral::Lanes,
     wave::Vertices,
@@ -24,13 +24,13 @@ impl<'a> PathTracer<'a> {
     ) -> Slots {
         let Workspace { wave, scattering, pending, .. } = workspace;
         let together = vertices.other.without(vertices.parting);
-        let u = wave.numbers_2d(group, vertices.even.or(together), Dimension::scatter_direction);
+        let u = wave.numbers_2d(group, vertices.wide().or(together), Dimension::scatter_direction);
         let choosing = together.keep(|slot| wave.bsdfs[slot].as_ref().is_some_and(Bsdf::chooses_lobe));
-        let u_lobe = wave.numbers_1d(group, choosing, Dimension::scatter_lobe);
-        if !vertices.even.is_empty() {
-            even::scatter(&wave.even, &wave.wo, &wave.from, &u, &mut wave.rays, scattering);
-        }
-        let mut scattered = vertices.even.keep(|slot| scattering.hero_pdf[slot] > 0.0);
+        let u_lobe = wave.numbers_1d(group, vertices.boundary.or(choosing), Dimension::scatter_lobe);
+        let (surfaces, rays) = (&wave.surfaces, &mut wave.rays);
+        let eta_scale = &mut wave.weights.eta_scale;
+        surfaces.scatter(vertices, &wave.wo, &wave.from, &u_lobe, &u, rays, eta_scale, scattering);
+        let mut scattered = vertices.wide().keep(|slot| scattering.hero_pdf[slot] > 0.0);
         for slot in vertices.other {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };
             let path = &mut wave.paths[slot];
@@ -48,7 +48,7 @@ impl<'a> PathTracer<'a> {
         }
         let mut carried = [0.0; WIDTH];
         advance(&mut wave.weights, scattering, &mut carried);
-        vertices.even.for_each(|slot| wave.paths[slot].specular = false);
+        vertices.wide().for_each(|slot| wave.paths[slot].specular = false);
         let mut chances = [0.0; WIDTH];
         for slot in scattered {
             let path = &mut wave.paths[slot];

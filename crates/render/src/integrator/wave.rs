@@ -2,13 +2,14 @@ use super::{
     CombineStrategy,
     path::{Path, Waiting},
     spectral::Lanes,
+    surfaces::Surfaces,
     weights::{WaveWeights, Weights},
 };
-use crate::bxdf::Bsdf;
+use crate::bxdf::{Bsdf, WideBxdf};
 use tenfold_geometry::{ReferencePoint, ReferencePoints};
 use tenfold_math::{Floats, Rays, Slots, Vec2s, Vec3, Vec3s, WIDTH};
 use tenfold_sampling::{Dimension, SampleGroup};
-use tenfold_spectrum::{SampledSpectrum, Spectra};
+use tenfold_spectrum::SampledSpectrum;
 
 /// Paths side by side, each in the slot of its sample, which take every step together: what is the same for all of them is done in vector
 /// instructions.
@@ -24,20 +25,10 @@ pub(super) struct Wave<'a> {
     pub(super) from: ReferencePoints,
     /// Unit directions from there to where they came from.
     pub(super) wo: Vec3s,
-    /// What even reflectors are at these vertices.
-    pub(super) even: EvenReflectors,
-    /// How light is scattered at these vertices, where they are not even reflectors.
+    /// The surfaces at these vertices, where their scattering is computed side by side.
+    pub(super) surfaces: Surfaces,
+    /// How light is scattered at the others.
     pub(super) bsdfs: [Option<Bsdf<'a>>; WIDTH],
-}
-
-/// Surfaces that reflect the same radiance in all directions.
-#[derive(Debug, Default)]
-pub(super) struct EvenReflectors {
-    /// Unit shading normals.
-    pub(super) n: Vec3s,
-    /// Directions to which the first axes of the shading frames are nearest.
-    pub(super) tangent: Vec3s,
-    pub(super) reflectance: Spectra,
 }
 
 /// The slots whose paths have come to a vertex from which they go on, by what they met.
@@ -45,12 +36,24 @@ pub(super) struct EvenReflectors {
 pub(super) struct Vertices {
     /// At even reflectors.
     pub(super) even: Slots,
+    /// At rough boundaries of transparent bodies.
+    pub(super) boundary: Slots,
+    /// At rough metals.
+    pub(super) metal: Slots,
     /// At other surfaces.
     pub(super) other: Slots,
     /// Those of `other` that scatter not only in single directions.
     pub(super) glossy: Slots,
     /// Those of `other` whose wavelengths part.
     pub(super) parting: Slots,
+}
+
+impl Vertices {
+    /// Those whose scattering is computed side by side.
+    #[inline]
+    pub(super) fn wide(&self) -> Slots {
+        self.even.or(self.boundary).or(self.metal)
+    }
 }
 
 impl Default for Wave<'_> {
@@ -62,7 +65,7 @@ impl Default for Wave<'_> {
             rays: Rays::default(),
             from: ReferencePoints::default(),
             wo: Vec3s::ZERO,
-            even: EvenReflectors::default(),
+            surfaces: Surfaces::default(),
             bsdfs: [const { None }; WIDTH],
         }
     }
@@ -150,25 +153,27 @@ impl Wave<'_> {
         self.paths[slot].carried(&self.weights.get(slot), combine, emitted, light_pdf)
     }
 
-    /// Puts the path in a slot at an even reflector whose shading frame has these `axes`: z, and what x is nearest to. At a black one it ends.
+    /// Puts the path in a slot at a surface with the scattering function `bxdf`, whose shading frame has these `axes`: z, and what x is nearest to. At a
+    /// black one it ends.
     #[inline]
-    pub(super) fn arrive_at_even(
+    pub(super) fn arrive_at(
         &mut self,
         slot: usize,
         from: ReferencePoint,
         wo: Vec3,
-        [n, tangent]: [Vec3; 2],
-        reflectance: SampledSpectrum,
+        axes: [Vec3; 2],
+        bxdf: &WideBxdf,
         vertices: &mut Vertices,
     ) {
-        if reflectance.is_black() {
-            return;
-        }
-        self.from.set(slot, from.seen_from(wo));
+        let (slots, transmits) = match bxdf {
+            WideBxdf::Diffuse(reflectance) if reflectance.is_black() => return,
+            WideBxdf::Diffuse(_) => (&mut vertices.even, false),
+            WideBxdf::Dielectric(_) => (&mut vertices.boundary, true),
+            WideBxdf::Conductor(_) => (&mut vertices.metal, false),
+        };
+        slots.insert(slot);
+        self.from.set(slot, if transmits { from } else { from.seen_from(wo) });
         self.wo.set(slot, wo);
-        self.even.n.set(slot, n);
-        self.even.tangent.set(slot, tangent);
-        self.even.reflectance.set(slot, reflectance);
-        vertices.even.insert(slot);
+        self.surfaces.set(slot, axes, bxdf);
     }
 }

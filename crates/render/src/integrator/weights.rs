@@ -132,6 +132,18 @@ pub(super) struct Scattering {
 }
 
 impl Scattering {
+    /// Sets value and density, the same in all lanes, of a slot if it is one of those looked at; for loops over slots.
+    #[inline(always)]
+    pub(super) fn set_if(&mut self, is_here: bool, slot: usize, f: [f32; N], pdf: f32, cos: f32) {
+        let of = |new: f32, old: f32| if is_here { new } else { old };
+        let (old_f, old_pdf) = (self.f.array(slot), self.pdf.array(slot));
+        let f = [of(f[0], old_f[0]), of(f[1], old_f[1]), of(f[2], old_f[2]), of(f[3], old_f[3])];
+        self.f.set_array(slot, f);
+        self.pdf.set_array(slot, old_pdf.map(|old| of(pdf, old)));
+        self.hero_pdf[slot] = of(pdf, self.hero_pdf[slot]);
+        self.cos[slot] = of(cos, self.cos[slot]);
+    }
+
     #[inline]
     pub(super) fn set(
         &mut self,

@@ -62,4 +62,15 @@ impl Conductor {
         let ComplexIndex { eta, k } = self.metal.index(at);
         bxdf::Conductor::new(eta, k, at.distribution(&self.roughness))
     }
+
+    /// The same where it is rough.
+    #[inline]
+    pub(super) fn rough(&self, at: &Point<'_>) -> Option<bxdf::Conductor> {
+        let distribution = at.distribution(&self.roughness);
+        if distribution.effectively_smooth() {
+            return None;
+        }
+        let ComplexIndex { eta, k } = self.metal.index(at);
+        Some(bxdf::Conductor::new(eta, k, distribution))
+    }
 }

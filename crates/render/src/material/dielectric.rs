@@ -15,6 +15,13 @@ impl Dielectric {
     pub(super) fn bxdf(&self, at: &Point<'_>) -> bxdf::Dielectric {
         bxdf::Dielectric::new(self.eta.sample(at.waves.indices), at.distribution(&self.roughness))
     }
+
+    /// The boundary where it is rough, if nothing disperses.
+    #[inline]
+    pub(super) fn rough(&self, at: &Point<'_>) -> Option<bxdf::Interface> {
+        let interface = bxdf::Interface::new(self.eta.constant()?, at.distribution(&self.roughness));
+        (!interface.is_smooth()).then_some(interface)
+    }
 }
 
 /// A pane too thin to displace what is seen through it.

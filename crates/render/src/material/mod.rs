@@ -26,7 +26,7 @@ use tenfold_math::Id;
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::{
-    bxdf::{Bsdf, Bxdf, TrowbridgeReitz},
+    bxdf::{Bsdf, Bxdf, TrowbridgeReitz, WideBxdf},
     texture::{FloatSlot, SpectrumSlot, TextureContext, Textures},
 };
 
@@ -240,19 +240,21 @@ impl Materials {
         self.all[id.index()].bxdf(&Point { textures, context: at, waves: waves.into() })
     }
 
-    /// The albedo where a surface of this material is a plain even reflector: what [`Materials::bsdf`] answers is a [`Bxdf::Diffuse`] of it. `None` of others.
+    /// What [`Materials::bsdf`] answers of a plain surface, where that is a scattering function that is computed side by side; `None` of others.
     #[inline]
-    pub fn even_reflectance<'w>(
+    pub(crate) fn wide_bxdf<'w>(
         &self,
         id: Id<Material>,
         textures: &Textures,
         at: &TextureContext,
         waves: impl Into<Waves<'w>>,
-    ) -> Option<SampledSpectrum> {
-        match (&self.all[id.index()], &self.reliefs[id.index()]) {
-            (Material::Diffuse(m), Relief::Smooth) => {
-                Some(m.bxdf(&Point { textures, context: at, waves: waves.into() }).reflectance())
-            }
+    ) -> Option<WideBxdf> {
+        let Relief::Smooth = self.reliefs[id.index()] else { return None };
+        let at = Point { textures, context: at, waves: waves.into() };
+        match &self.all[id.index()] {
+            Material::Diffuse(m) => Some(WideBxdf::Diffuse(m.bxdf(&at).reflectance())),
+            Material::Dielectric(m) => m.rough(&at).map(WideBxdf::Dielectric),
+            Material::Conductor(m) => m.rough(&at).map(WideBxdf::Conductor),
             _ => None,
         }
     }
