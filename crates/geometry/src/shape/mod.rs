@@ -18,9 +18,7 @@ pub use quadric::ShapeError;
 pub use rectangle::Rectangle;
 pub use sphere::{Sphere, SphereParams};
 pub use triangle::Triangle;
-pub(crate) use triangle::{
-    FlatTriangle, RayShear, ShearedTriangle, ShearedTriangles, fastest_axis, permuted,
-};
+pub(crate) use triangle::{FlatTriangle, RayShear, ShearedTriangle, fastest_axis, permuted, sheared_vertex};
 
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,

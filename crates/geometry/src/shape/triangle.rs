@@ -4,7 +4,7 @@ use crate::{
     mesh::is_degenerate,
     sample::{corner_weights, pdf_by_solid_angle},
 };
-use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, Vec3s, gamma};
+use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma};
 use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
 
 /// Solid angles outside this range are sampled by area: directions to smaller triangles lose their digits, and
@@ -362,13 +362,10 @@ impl RayShear {
     /// zero; zero counts as inside for both neighbours of an edge: nothing leaks.
     pub(crate) fn intersect(&self, p: [Vec3; 3], t_max: f32) -> Option<ShapeHit> {
         let [kx, ky, kz] = self.axes;
-        let triangle = ShearedTriangle::new(
-            p.map(|p| {
-                let p = p - self.origin;
-                Vec3::new(p[kx], p[ky], p[kz])
-            }),
-            self.shear,
-        );
+        let triangle = ShearedTriangle::new(p.map(|p| {
+            let p = p - self.origin;
+            sheared_vertex(Vec3::new(p[kx], p[ky], p[kz]), self.shear)
+        }));
         if !triangle.is_inside() {
             return None;
         }
@@ -384,17 +381,14 @@ impl RayShear {
 /// A triangle in the space where a ray runs along z through the origin, before it is scaled along that axis.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct ShearedTriangle {
-    vertices: [Vec3; 3],
+    pub(crate) vertices: [Vec3; 3],
     /// Twice the areas that the edges span with the ray: as the barycentric weights of the opposite vertices.
-    edges: [f32; 3],
+    pub(crate) edges: [f32; 3],
 }
 
 impl ShearedTriangle {
-    /// The triangle whose vertices, less the origin of the ray, are `p` by permuted axes.
     #[inline(always)]
-    pub(crate) fn new(p: [Vec3; 3], shear: Vec3) -> Self {
-        let sheared = |p: Vec3| Vec3::new(p.x + shear.x * p.z, p.y + shear.y * p.z, p.z);
-        let vertices = [sheared(p[0]), sheared(p[1]), sheared(p[2])];
+    pub(crate) fn new(vertices: [Vec3; 3]) -> Self {
         let edge = |a: Vec3, b: Vec3| a.x * b.y - a.y * b.x;
         Self { vertices, edges: opposite_edges(vertices, edge) }
     }
@@ -434,29 +428,10 @@ impl ShearedTriangle {
     }
 }
 
-/// A [`ShearedTriangle`] in each slot.
-#[derive(Copy, Clone, Debug, Default)]
-pub(crate) struct ShearedTriangles {
-    vertices: [Vec3s; 3],
-    edges: Vec3s,
-}
-
-impl ShearedTriangles {
-    #[inline(always)]
-    pub(crate) fn get(&self, slot: usize) -> ShearedTriangle {
-        let [a, b, c] = &self.vertices;
-        let vertices = [a.get(slot), b.get(slot), c.get(slot)];
-        ShearedTriangle { vertices, edges: self.edges.get(slot).to_array() }
-    }
-
-    #[inline(always)]
-    pub(crate) fn set(&mut self, slot: usize, triangle: &ShearedTriangle) {
-        let [a, b, c] = triangle.vertices;
-        self.vertices[0].set(slot, a);
-        self.vertices[1].set(slot, b);
-        self.vertices[2].set(slot, c);
-        self.edges.set(slot, triangle.edges.into());
-    }
+/// The vertex that lies at `p`, by permuted axes, from the origin of a ray, in the space of [`ShearedTriangle`]s.
+#[inline(always)]
+pub(crate) fn sheared_vertex(p: Vec3, shear: Vec3) -> Vec3 {
+    Vec3::new(p.x + shear.x * p.z, p.y + shear.y * p.z, p.z)
 }
 
 /// `v` by the axes that become x, y and z where a ray runs fastest along `axis`.

@@ -5,9 +5,9 @@ use crate::{
     Hit, InstanceId, Primitive, PrimitiveId, ShapeHit,
     bvh::{LONGER, RayCourses, padded},
     mesh::is_degenerate,
-    shape::{Ball, Parallelogram, RayShear, ShearedTriangle, ShearedTriangles, permuted},
+    shape::{Ball, Parallelogram, RayShear, ShearedTriangle, permuted, sheared_vertex},
 };
-use tenfold_math::{Bounds3, Floats, Id, Rays, Slots, Vec3, WIDTH, vectorized};
+use tenfold_math::{Bounds3, Floats, Id, Rays, Slots, Vec3, Vec3s, WIDTH, vectorized};
 
 /// Worlds of more primitives are faster by their hierarchy.
 const MOST: usize = 64;
@@ -30,15 +30,44 @@ struct Run {
 
 #[derive(Debug)]
 enum Kind {
-    Triangles(Vec<[Vec3; 3]>),
+    Triangles(Triangles),
     Ball(Ball),
     Parallelogram(Parallelogram),
     /// One that rays are tested against one by one.
     Other,
 }
 
-/// Triangles of a run: more would have a box that is hardly ever missed.
-const MOST_OF_RUN: usize = 12;
+/// Triangles that follow each other, with each of their vertices once.
+#[derive(Debug, Default)]
+struct Triangles {
+    vertices: Vec<Vec3>,
+    /// By the places of the vertices.
+    corners: Vec<[u8; 3]>,
+}
+
+/// Vertices of a run: more would have a box that is hardly ever missed.
+const MOST_VERTICES: usize = 16;
+
+impl Triangles {
+    /// Adds a triangle if there is room for it. Returns whether there was.
+    fn add(&mut self, corners: [Vec3; 3]) -> bool {
+        let before = self.vertices.len();
+        let places = corners.map(|p| {
+            let known = self.vertices.iter().position(|v| *v == p);
+            known.unwrap_or_else(|| {
+                self.vertices.push(p);
+                self.vertices.len() - 1
+            }) as u8
+        });
+        let fits = self.vertices.len() <= MOST_VERTICES;
+        if fits {
+            self.corners.push(places);
+        } else {
+            self.vertices.truncate(before);
+        }
+        fits
+    }
+}
 
 /// What rays have found so far.
 #[derive(Copy, Clone, Debug)]
@@ -91,15 +120,16 @@ impl Few {
                 }
                 if let Some(Run { bounds: all, primitives: Kind::Triangles(run), .. }) =
                     triangles.map(|i| &mut self.runs[i])
-                    && run.len() < MOST_OF_RUN
+                    && run.add(corners)
                 {
                     *all = all.union(padded(bounds, bounds.diagonal().max_element()));
-                    run.push(corners);
                     self.names.push(name);
                     return;
                 }
                 *triangles = Some(self.runs.len());
-                Kind::Triangles(vec![corners])
+                let mut run = Triangles::default();
+                run.add(corners);
+                Kind::Triangles(run)
             }
             Primitive::Patch(patch) => patch.parallelogram().map_or(Kind::Other, Kind::Parallelogram),
             _ => primitive.ball().map_or(Kind::Other, |ball| Kind::Ball(*ball)),
@@ -198,6 +228,7 @@ vectorized! {
             let is_live = (bits >> i & 1 == 1) & leads_somewhere(&rays.get(i), t_max[i]);
             found.t_max[i] = if is_live { t_max[i] } else { 0.0 };
         }
+        let mut sheared = [Vec3s::ZERO; MOST_VERTICES];
         for run in &few.runs {
             let mut entered = [false; WIDTH];
             for i in 0..WIDTH {
@@ -208,8 +239,19 @@ vectorized! {
             }
             match &run.primitives {
                 Kind::Triangles(triangles) => {
-                    for (place, corners) in (run.first..).zip(triangles) {
-                        hit_triangle(corners, place, &entered, rays, courses, found);
+                    for (vertex, out) in triangles.vertices.iter().zip(&mut sheared) {
+                        for i in 0..WIDTH {
+                            let p = permuted(*vertex, courses.axis[i]) - courses.origin.get(i);
+                            out.set(i, sheared_vertex(p, courses.shear.get(i)));
+                        }
+                    }
+                    for (place, corners) in (run.first..).zip(&triangles.corners) {
+                        let vertices = corners.map(|i| &sheared[usize::from(i) % MOST_VERTICES]);
+                        let flat = hit_triangle(vertices, place, &entered, courses, found);
+                        if flat != [false; WIDTH] {
+                            let corners = corners.map(|i| triangles.vertices[usize::from(i)]);
+                            hit_flat(&corners, place, &flat, rays, courses, found);
+                        }
                     }
                 }
                 Kind::Ball(ball) => {
@@ -251,39 +293,35 @@ fn enters(bounds: &Bounds3, origin: Vec3, inverse: Vec3, t_max: f32) -> bool {
     (t_max > 0.0) & (near <= LONGER * lower(far, t_max))
 }
 
-/// The hits of a triangle by the rays that have entered its box, before those that were found: as the hierarchy tests them, to the bit.
+/// The hits of a triangle with these sheared vertices by the rays that have entered its box, before those that were found: as the hierarchy tests them, to the
+/// bit. Returns where the edge functions all cancelled.
 #[inline(always)]
 fn hit_triangle(
-    corners: &[Vec3; 3],
+    vertices: [&Vec3s; 3],
     place: u32,
     entered: &[bool; WIDTH],
-    rays: &Rays,
     courses: &RayCourses,
     found: &mut Found,
-) {
-    let [a, b, c] = *corners;
-    let mut triangles = ShearedTriangles::default();
+) -> [bool; WIDTH] {
+    let mut flat = [false; WIDTH];
     let mut inside = [false; WIDTH];
+    let mut edges = Vec3s::ZERO;
     for i in 0..WIDTH {
-        let (axis, o) = (courses.axis[i], courses.origin.get(i));
-        let from_origin = [permuted(a, axis) - o, permuted(b, axis) - o, permuted(c, axis) - o];
-        let triangle = ShearedTriangle::new(from_origin, courses.shear.get(i));
-        triangles.set(i, &triangle);
+        let triangle = ShearedTriangle::new(vertices.map(|v| v.get(i)));
+        edges.set(i, triangle.edges.into());
         inside[i] = entered[i] & triangle.is_inside();
     }
     if inside == [false; WIDTH] {
-        return;
+        return flat;
     }
-    let mut is_flat = [false; WIDTH];
     for i in 0..WIDTH {
-        let triangle = triangles.get(i);
+        let triangle =
+            ShearedTriangle { vertices: vertices.map(|v| v.get(i)), edges: edges.get(i).to_array() };
         let (hit, is_in_front) = triangle.hit(courses.shear.z[i]);
-        is_flat[i] = inside[i] & (triangle.determinant() == 0.0);
-        found.take(i, hit, place, inside[i] & !is_flat[i] & is_in_front & (hit.t < found.t_max[i]));
+        flat[i] = inside[i] & (triangle.determinant() == 0.0);
+        found.take(i, hit, place, inside[i] & !flat[i] & is_in_front & (hit.t < found.t_max[i]));
     }
-    if is_flat != [false; WIDTH] {
-        hit_flat(corners, place, &is_flat, rays, courses, found);
-    }
+    flat
 }
 
 /// [`hit_triangle`] where the edge functions all cancelled.
