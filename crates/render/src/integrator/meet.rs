@@ -106,7 +106,7 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The scattering function of a plain surface, where it is computed side by side and samples directions by its own density.
-    #[inline]
+    #[inline(always)]
     fn wide_bxdf(
         &self,
         material: Id<Material>,
@@ -116,8 +116,10 @@ impl<'a> PathTracer<'a> {
         let scene = self.scene;
         let by_itself = self.strategies.scatter == ScatterStrategy::Bsdf
             && sample.sampler.held(Variable::ScatterDirection).is_none();
-        let bxdf = || scene.materials.wide_bxdf(material, &scene.textures, at, self.waves(sample));
-        by_itself.then(bxdf).flatten()
+        if !by_itself {
+            return None;
+        }
+        scene.materials.wide_bxdf(material, &scene.textures, at, self.waves(sample))
     }
 
     /// Puts the path in `slot` at a vertex where it scatters as [`Wave::bsdfs`] says.

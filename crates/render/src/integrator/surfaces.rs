@@ -71,7 +71,7 @@ impl Surfaces {
     }
 
     /// Puts a surface with the scattering function `bxdf` and a frame with these `axes`, z and what x is nearest to, into a slot.
-    #[inline]
+    #[inline(always)]
     pub(super) fn set(&mut self, slot: usize, [n, tangent]: [Vec3; 2], bxdf: &WideBxdf) {
         self.n.set(slot, n);
         self.tangent.set(slot, tangent);

@@ -155,7 +155,7 @@ impl Wave<'_> {
 
     /// Puts the path in a slot at a surface with the scattering function `bxdf`, whose shading frame has these `axes`: z, and what x is nearest to. At a
     /// black one it ends.
-    #[inline]
+    #[inline(always)]
     pub(super) fn arrive_at(
         &mut self,
         slot: usize,

@@ -241,7 +241,7 @@ impl Materials {
     }
 
     /// What [`Materials::bsdf`] answers of a plain surface, where that is a scattering function that is computed side by side; `None` of others.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn wide_bxdf<'w>(
         &self,
         id: Id<Material>,
