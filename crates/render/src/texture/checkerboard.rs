@@ -47,9 +47,16 @@ impl Board {
 /// The square wave that is 1 on [0, 1) and −1 on [1, 2), under a tent filter of half width `r`.
 #[inline]
 fn wave(x: f32, r: f32) -> f32 {
-    if floor(x - r) == floor(x + r) {
-        return if floor(0.5 * x) == 0.5 * floor(x) { 1.0 } else { -1.0 };
+    let field = floor(x - r);
+    if field == floor(x + r) {
+        return if floor(0.5 * field) == 0.5 * field { 1.0 } else { -1.0 };
     }
+    filtered_wave(x, r)
+}
+
+/// [`wave`] where the filter reaches over a border.
+#[inline(never)]
+fn filtered_wave(x: f32, r: f32) -> f32 {
     // A tent is a box applied to itself, so its integral is the second difference of the wave's second
     // antiderivative. The part of that which grows with x cancels and is left out for the sake of rounding.
     let second_antiderivative = |x: f32| {
