@@ -1,6 +1,6 @@
 //! Surfaces without shading frames of their own where rays have hit them, side by side.
 
-use tenfold_math::{Floats, Slots, Vec2, Vec2s, Vec3, Vec3s, WIDTH};
+use tenfold_math::{Floats, Vec2, Vec2s, Vec3, Vec3s, WIDTH};
 
 /// What shading needs of surfaces without shading frames of their own, in each slot: see
 /// [`SurfaceInteraction`](crate::SurfaceInteraction).
@@ -51,10 +51,4 @@ pub(crate) struct PlainHits {
     pub(crate) t: Floats,
     pub(crate) u: Floats,
     pub(crate) v: Floats,
-}
-
-/// Whether each slot is among some.
-#[inline]
-pub(crate) fn flags(slots: Slots) -> [bool; WIDTH] {
-    std::array::from_fn(|slot| slots.contains(slot))
 }

@@ -27,7 +27,7 @@ pub use spherical::{
     angle_between, direction_to_spherical, spherical_direction, spherical_quad_area, spherical_triangle_area,
 };
 pub use transform::Transform;
-pub use wide::{Floats, Rays, Slots, Vec2s, Vec3s, WIDTH, normalize};
+pub use wide::{Floats, Rays, Slots, Vec2s, Vec3s, WIDTH, normalize, select};
 
 /// The largest float below one: uniform random numbers lie in `[0, ONE_MINUS_EPSILON]`.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - f32::EPSILON / 2.0;

@@ -68,6 +68,12 @@ impl Slots {
         kept
     }
 
+    /// All bits in these slots, none in others: for [`select`].
+    #[inline]
+    pub fn masks(self) -> [u32; WIDTH] {
+        std::array::from_fn(|slot| u32::from(self.contains(slot)).wrapping_neg())
+    }
+
     /// Those of both.
     #[inline]
     #[must_use]
@@ -93,6 +99,13 @@ impl Iterator for Slots {
         self.0 &= self.0.wrapping_sub(1);
         (slot < WIDTH).then_some(slot)
     }
+}
+
+/// `new` where `mask` has all bits, `old` where it has none. Of a condition that chooses between two numbers in memory, the compiler makes one that
+/// chooses between their places, which vectors have not.
+#[inline(always)]
+pub fn select(mask: u32, new: f32, old: f32) -> f32 {
+    f32::from_bits(new.to_bits() & mask | old.to_bits() & !mask)
 }
 
 /// A vector in each slot, coordinate by coordinate.
@@ -121,6 +134,13 @@ impl Vec3s {
     #[inline(always)]
     pub fn set(&mut self, slot: usize, v: Vec3) {
         (self.x[slot], self.y[slot], self.z[slot]) = (v.x, v.y, v.z);
+    }
+
+    /// Sets the vector in a slot where `mask` has all bits, as [`select`].
+    #[inline(always)]
+    pub fn set_where(&mut self, mask: u32, slot: usize, v: Vec3) {
+        let Vec3 { x, y, z } = self.get(slot);
+        self.set(slot, Vec3::new(select(mask, v.x, x), select(mask, v.y, y), select(mask, v.z, z)));
     }
 }
 
@@ -251,6 +271,10 @@ mod tests {
         assert_eq!(Slots::first(2).or(slots), slots);
         assert!(slots.contains(15) && !slots.contains(3) && !slots.is_empty() && Slots::NONE.is_empty());
         assert_eq!(Slots::first(WIDTH).len(), WIDTH);
+        let mut chosen = Vec3s::ZERO;
+        let masks = slots.masks();
+        (0..WIDTH).for_each(|slot| chosen.set_where(masks[slot], slot, Vec3::X));
+        (0..WIDTH).for_each(|slot| assert_eq!(chosen.get(slot) == Vec3::X, slots.contains(slot)));
     }
 
     #[test]

@@ -28,7 +28,7 @@ pub use named::{named, named_names};
 pub use sampled::SampledSpectrum;
 pub use sigmoid::SigmoidPolynomial;
 pub use spd::{SpdError, parse_spd};
-pub use spectra::Spectra;
+pub use spectra::{Spectra, SpectraToEvaluate};
 pub use spectrum::{
     Blackbody, DenselySampled, PiecewiseError, PiecewiseLinear, RgbAlbedo, RgbIlluminant, RgbUnbounded,
     Spectrum,

@@ -26,10 +26,15 @@ impl SigmoidPolynomial {
     }
 
     /// Value at a wavelength in nm.
-    #[inline]
+    #[inline(always)]
     pub fn eval(&self, lambda: f32) -> f32 {
         let t = (lambda - MIDDLE) * (1.0 / HALF);
-        sigmoid(Vec4::splat((self.c[2] * t + self.c[1]) * t + self.c[0])).x
+        let x = (self.c[2] * t + self.c[1]) * t + self.c[0];
+        // As `sigmoid`.
+        let a = x.abs();
+        let q = (1.0 + a * a).sqrt();
+        let tail = 0.5 / (q * (q + a));
+        if x < 0.0 { tail } else { 1.0 - tail }
     }
 
     /// Values at the wavelengths of a path.

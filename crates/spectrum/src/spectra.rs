@@ -1,7 +1,7 @@
 //! Values at the wavelengths of many paths, side by side.
 
-use crate::{N, SampledSpectrum};
-use tenfold_math::{Floats, WIDTH};
+use crate::{N, SampledSpectrum, SampledWavelengths, SigmoidPolynomial, Spectrum};
+use tenfold_math::{Floats, Vec3, Vec3s, WIDTH, vectorized};
 
 /// A [`SampledSpectrum`] in each slot, wavelength by wavelength.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -43,9 +43,82 @@ impl Default for Spectra {
     }
 }
 
+/// A spectrum in each slot, to be evaluated at the wavelengths of that slot.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct SpectraToEvaluate {
+    /// Coefficients of those that are sigmoids.
+    sigmoids: Vec3s,
+    is_sigmoid: [bool; WIDTH],
+    /// Values of the others.
+    values: Spectra,
+}
+
+impl SpectraToEvaluate {
+    /// Sets the spectrum in a slot, whose wavelengths are `w`.
+    #[inline]
+    pub fn set(&mut self, slot: usize, spectrum: &Spectrum, w: &SampledWavelengths) {
+        if let Spectrum::RgbAlbedo(albedo) = spectrum {
+            self.sigmoids.set(slot, Vec3::from_array(albedo.sigmoid.c));
+            self.is_sigmoid[slot] = true;
+        } else {
+            self.set_values(slot, spectrum.sample(w));
+        }
+    }
+
+    /// Sets the spectrum in a slot by its values.
+    #[inline]
+    pub fn set_values(&mut self, slot: usize, values: SampledSpectrum) {
+        self.values.set(slot, values);
+        self.is_sigmoid[slot] = false;
+    }
+
+    /// The values of all at the wavelengths `lambda` in nm, which those of [`SpectraToEvaluate::set`] are.
+    pub fn evaluate(&self, lambda: &Spectra, out: &mut Spectra) {
+        evaluate(self, lambda, out);
+    }
+}
+
+vectorized! {
+    /// The values of spectra at the wavelengths `lambda`.
+    fn evaluate(spectra: &SpectraToEvaluate, lambda: &Spectra, out: &mut Spectra) {
+        for lane in 0..N {
+            for i in 0..WIDTH {
+                let sigmoid = SigmoidPolynomial { c: spectra.sigmoids.get(i).to_array() };
+                let value = sigmoid.eval(lambda.0[lane][i]);
+                out.0[lane][i] = if spectra.is_sigmoid[i] { value } else { spectra.values.0[lane][i] };
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Rgb, RgbAlbedo, RgbColorSpace, named};
+
+    #[test]
+    fn slots_evaluate_what_each_spectrum_has_alone() {
+        let srgb = RgbColorSpace::srgb();
+        let colors = [0.0f32, 0.3, 0.9, 1.0].map(|v| Rgb(Vec3::new(v, 1.0 - v, v * v)));
+        let white = Spectrum::RgbAlbedo(RgbAlbedo::new(srgb, Rgb(Vec3::ONE)));
+        let others = [Spectrum::Constant(0.4), named("metal-Cu-k").unwrap(), white];
+        let albedos = colors.map(|rgb| Spectrum::RgbAlbedo(RgbAlbedo::new(srgb, rgb)));
+        let all: Vec<_> = albedos.into_iter().chain(others).collect();
+        let (mut together, mut lambda, mut values) =
+            (SpectraToEvaluate::default(), Spectra::ZERO, Spectra::ZERO);
+        for round in 0..200 {
+            let w: [_; WIDTH] = std::array::from_fn(|slot| {
+                SampledWavelengths::sample_visible((round * WIDTH + slot) as f32 / 3200.0)
+            });
+            let chosen = |slot: usize| &all[(round + slot * slot) % all.len()];
+            for slot in 0..WIDTH {
+                lambda.set_array(slot, w[slot].lambda());
+                together.set(slot, chosen(slot), &w[slot]);
+            }
+            together.evaluate(&lambda, &mut values);
+            (0..WIDTH).for_each(|slot| assert_eq!(values.get(slot), chosen(slot).sample(&w[slot])));
+        }
+    }
 
     #[test]
     fn what_is_set_is_there_again() {

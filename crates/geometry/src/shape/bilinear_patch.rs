@@ -1,7 +1,7 @@
 use super::{Rectangle, ShapeHit, quadric::integrate, unit_cross};
 use crate::{
     BilinearMesh, NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint,
-    plain::{PlainHits, PlainSurface, PlainSurfaces, flags},
+    plain::{PlainHits, PlainSurface, PlainSurfaces},
     sample::pdf_by_solid_angle,
 };
 use glam::{DVec3, Vec3A};
@@ -173,7 +173,7 @@ impl<'a> BilinearPatch<'a> {
     /// [`BilinearPatch::interaction`] at hits of a patch without normals of its own, in those of `slots` where its edges span a plane. Returns them.
     pub(crate) fn plain_surfaces(&self, slots: Slots, at: &PlainHits, out: &mut PlainSurfaces) -> Slots {
         let (corners, uvs) = (self.positions(), self.mesh.uvs(self.index));
-        let mut found = flags(slots);
+        let mut found = slots.flags();
         plain_surfaces(
             &corners,
             self.mesh.flip,

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     NormalCone, ReferencePoint, ShapeSample, SurfaceInteraction, SurfacePoint,
-    plain::{PlainHits, PlainSurface, PlainSurfaces, flags},
+    plain::{PlainHits, PlainSurface, PlainSurfaces},
     sample::pdf_by_solid_angle,
 };
 use glam::Mat3;
@@ -260,7 +260,7 @@ impl Sphere {
     pub(crate) fn plain_surfaces(&self, slots: Slots, rays: &Rays, at: &PlainHits, out: &mut PlainSurfaces) {
         let (Some(ball), to_world) = (&self.round, &self.placement.to_world) else { return };
         let (to_object, to_world) = (to_world.inverse_affine().matrix3, to_world.affine().matrix3);
-        plain_surfaces(self, ball, &to_object.into(), &to_world.into(), rays, at, &flags(slots), out);
+        plain_surfaces(self, ball, &to_object.into(), &to_world.into(), rays, at, &slots.flags(), out);
     }
 
     pub(super) fn sample_area(&self, u: Vec2) -> Option<ShapeSample> {

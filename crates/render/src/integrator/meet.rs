@@ -18,6 +18,7 @@ use crate::{
 use tenfold_geometry::{Candidate, Hit, PlainSurfaces, PrimitiveId, ReferencePoint, SurfaceInteraction};
 use tenfold_math::{Frame, Id, Ray, Slots, Vec3, WIDTH};
 use tenfold_sampling::{Dimension, Variable, hash};
+use tenfold_spectrum::SpectraToEvaluate;
 
 /// Passing through this many interfaces ends a path: a bound for scenes with interfaces without end.
 const MOST_PASSES: u32 = 1024;
@@ -30,7 +31,7 @@ impl<'a> PathTracer<'a> {
         samples: &mut [Sample<'_>],
         workspace: &mut Workspace<'a>,
     ) -> Vertices {
-        let Workspace { wave, courses, surfaces, rays, .. } = workspace;
+        let Workspace { wave, courses, surfaces, albedos, rays, .. } = workspace;
         rays.path += live.len() as u64;
         let mut hits = [None; WIDTH];
         let stops = |slot: usize, c: &Candidate<'_>| {
@@ -39,7 +40,7 @@ impl<'a> PathTracer<'a> {
         };
         self.scene.world.intersect_slots(live, &wave.rays, courses, stops, &mut hits);
         let mut vertices = Vertices::default();
-        let plain = self.meet_plain(live, &hits, samples, wave, surfaces, &mut vertices);
+        let plain = self.meet_plain(live, &hits, samples, wave, surfaces, albedos, &mut vertices);
         for slot in live.without(plain) {
             self.meet(slot, hits[slot], &mut samples[slot], wave, rays, &mut vertices);
         }
@@ -55,6 +56,7 @@ impl<'a> PathTracer<'a> {
         samples: &[Sample<'_>],
         wave: &mut Wave<'a>,
         surfaces: &mut PlainSurfaces,
+        albedos: &mut SpectraToEvaluate,
         vertices: &mut Vertices,
     ) -> Slots {
         let scene = self.scene;
@@ -79,6 +81,7 @@ impl<'a> PathTracer<'a> {
             }
         }
         let plain = scene.world.plain_surfaces(candidates, textured, &wave.rays, hits, surfaces);
+        let mut even = Slots::NONE;
         for slot in plain {
             let Some(hit) = &hits[slot] else { continue };
             let at = TextureContext {
@@ -90,6 +93,17 @@ impl<'a> PathTracer<'a> {
             };
             let sample = &samples[slot];
             let material = self.look(hit.primitive).material;
+            if self.scatters_by_itself(sample)
+                && let Some(albedo) = scene.materials.even_albedo(material)
+            {
+                let w = &sample.wavelengths;
+                match scene.textures.settle(albedo, &at) {
+                    Some(spectrum) => albedos.set(slot, spectrum, w),
+                    None => albedos.set_values(slot, scene.textures.spectrum(albedo, &at, w)),
+                }
+                even.insert(slot);
+                continue;
+            }
             let (n, tangent, wo) = (at.n, surfaces.dpdu.get(slot), surfaces.wo.get(slot));
             let (p, p_error, time) = (at.p, surfaces.p_error.get(slot), wave.rays.time[slot]);
             let from = ReferencePoint { p, p_error, n, ns: n, one_sided: false, time };
@@ -102,7 +116,17 @@ impl<'a> PathTracer<'a> {
             wave.bsdfs[slot] = bxdf.map(|bxdf| self.at_work(Bsdf::new(frame, bxdf), sample));
             self.arrive(slot, from, wo, wave, vertices);
         }
+        if !even.is_empty() {
+            wave.arrive_at_even(even, surfaces, albedos, vertices);
+        }
         ended.or(plain)
+    }
+
+    /// Whether directions are sampled by the own density of what scatters.
+    #[inline]
+    fn scatters_by_itself(&self, sample: &Sample<'_>) -> bool {
+        self.strategies.scatter == ScatterStrategy::Bsdf
+            && sample.sampler.held(Variable::ScatterDirection).is_none()
     }
 
     /// The scattering function of a plain surface, where it is computed side by side and samples directions by its own density.
@@ -114,9 +138,7 @@ impl<'a> PathTracer<'a> {
         sample: &Sample<'_>,
     ) -> Option<WideBxdf> {
         let scene = self.scene;
-        let by_itself = self.strategies.scatter == ScatterStrategy::Bsdf
-            && sample.sampler.held(Variable::ScatterDirection).is_none();
-        if !by_itself {
+        if !self.scatters_by_itself(sample) {
             return None;
         }
         scene.materials.wide_bxdf(material, &scene.textures, at, self.waves(sample))

@@ -3,7 +3,7 @@ use crate::{light::LightSamples, scene::Scene};
 use tenfold_geometry::{PlainSurfaces, RayCourses};
 use tenfold_math::Rays;
 use tenfold_sampling::{PixelSample, SampleGroup};
-use tenfold_spectrum::{SampledSpectrum, SampledWavelengths, Spectra};
+use tenfold_spectrum::{SampledSpectrum, SampledWavelengths, Spectra, SpectraToEvaluate};
 
 /// How many rays have been traced.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -64,6 +64,7 @@ pub struct Workspace<'a> {
     pub(super) wave: Wave<'a>,
     pub(super) courses: RayCourses,
     pub(super) surfaces: PlainSurfaces,
+    pub(super) albedos: SpectraToEvaluate,
     pub(super) lights: LightSamples,
     pub(super) scattering: Scattering,
     pub(super) arriving: Spectra,
@@ -96,7 +97,7 @@ impl<'a> PathTracer<'a> {
         samples: &mut [Sample<'_>],
         workspace: &mut Workspace<'a>,
     ) {
-        let mut live = workspace.wave.start(samples.len(), rays);
+        let mut live = workspace.wave.start(samples, rays);
         loop {
             while !live.is_empty() {
                 let vertices = self.go_on(live, samples, workspace);

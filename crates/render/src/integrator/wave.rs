@@ -1,15 +1,15 @@
 use super::{
-    CombineStrategy,
+    CombineStrategy, Sample, even,
     path::{Path, Waiting},
     spectral::Lanes,
     surfaces::Surfaces,
     weights::{WaveWeights, Weights},
 };
 use crate::bxdf::{Bsdf, WideBxdf};
-use tenfold_geometry::{ReferencePoint, ReferencePoints};
+use tenfold_geometry::{PlainSurfaces, ReferencePoint, ReferencePoints};
 use tenfold_math::{Floats, Rays, Slots, Vec2s, Vec3, Vec3s, WIDTH};
 use tenfold_sampling::{Dimension, SampleGroup};
-use tenfold_spectrum::SampledSpectrum;
+use tenfold_spectrum::{SampledSpectrum, Spectra, SpectraToEvaluate};
 
 /// Paths side by side, each in the slot of its sample, which take every step together: what is the same for all of them is done in vector
 /// instructions.
@@ -19,6 +19,8 @@ pub(super) struct Wave<'a> {
     /// Whether all have come equally far.
     in_step: bool,
     pub(super) weights: WaveWeights,
+    /// The wavelengths of the samples, in nm.
+    pub(super) lambda: Spectra,
     /// Where the paths go next.
     pub(super) rays: Rays,
     /// Their last vertices.
@@ -62,6 +64,7 @@ impl Default for Wave<'_> {
             paths: [Path::from_camera(); WIDTH],
             in_step: true,
             weights: WaveWeights::default(),
+            lambda: Spectra::ZERO,
             rays: Rays::default(),
             from: ReferencePoints::default(),
             wo: Vec3s::ZERO,
@@ -72,14 +75,15 @@ impl Default for Wave<'_> {
 }
 
 impl Wave<'_> {
-    /// Puts the paths of `count` samples that start at the camera, with the first of `rays`, into the first slots.
+    /// Puts the paths of `samples` that start at the camera, with the first of `rays`, into the first slots.
     #[inline]
-    pub(super) fn start(&mut self, count: usize, rays: &Rays) -> Slots {
+    pub(super) fn start(&mut self, samples: &[Sample<'_>], rays: &Rays) -> Slots {
         self.paths = [Path::from_camera(); WIDTH];
         (0..WIDTH).for_each(|slot| self.weights.set(slot, &Weights::ONE, &Lanes::ALL));
+        samples.iter().enumerate().for_each(|(i, s)| self.lambda.set_array(i, s.wavelengths.lambda()));
         self.rays = *rays;
         self.in_step = true;
-        Slots::first(count)
+        Slots::first(samples.len())
     }
 
     /// Takes the last of each sample's `waiting` paths.
@@ -175,5 +179,23 @@ impl Wave<'_> {
         self.from.set(slot, if transmits { from } else { from.seen_from(wo) });
         self.wo.set(slot, wo);
         self.surfaces.set(slot, axes, bxdf);
+    }
+
+    /// Puts the paths in `slots` where they `met` even reflectors of these albedos. Those at black ones end.
+    #[inline]
+    pub(super) fn arrive_at_even(
+        &mut self,
+        slots: Slots,
+        met: &PlainSurfaces,
+        albedos: &SpectraToEvaluate,
+        vertices: &mut Vertices,
+    ) {
+        albedos.evaluate(&self.lambda, &mut self.surfaces.reflectance);
+        let mut found = slots.masks();
+        even::arrive(met, &self.rays.time, &mut found, &mut self.surfaces, &mut self.from, &mut self.wo);
+        for slot in slots.keep(|slot| found[slot] != 0) {
+            self.from.one_sided[slot] = true;
+            vertices.even.insert(slot);
+        }
     }
 }

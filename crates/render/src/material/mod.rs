@@ -240,6 +240,16 @@ impl Materials {
         self.all[id.index()].bxdf(&Point { textures, context: at, waves: waves.into() })
     }
 
+    /// The albedo, beyond whose bounds of 0 and 1 it is clamped, of surfaces of this material, where they are plain even reflectors: what
+    /// [`Materials::bsdf`] answers is a [`Bxdf::Diffuse`] of it. `None` of others.
+    #[inline]
+    pub fn even_albedo(&self, id: Id<Material>) -> Option<&SpectrumSlot> {
+        match (&self.all[id.index()], &self.reliefs[id.index()]) {
+            (Material::Diffuse(m), Relief::Smooth) => Some(&m.reflectance),
+            _ => None,
+        }
+    }
+
     /// What [`Materials::bsdf`] answers of a plain surface, where that is a scattering function that is computed side by side; `None` of others.
     #[inline(always)]
     pub(crate) fn wide_bxdf<'w>(

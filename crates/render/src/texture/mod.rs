@@ -178,6 +178,27 @@ impl Textures {
         }
     }
 
+    /// The spectrum in a slot at a point of a surface, where it is one that the scene has and no mixture.
+    #[inline]
+    pub fn settle<'s>(&'s self, slot: &'s SpectrumSlot, at: &TextureContext) -> Option<&'s Spectrum> {
+        let id = match slot {
+            SpectrumSlot::Constant(v) => return Some(v),
+            SpectrumSlot::Texture(id) => *id,
+        };
+        match self.spectrum_texture(id) {
+            SpectrumTexture::Checkerboard(t) => {
+                let weight = t.board.weight(at);
+                if weight != 0.0 && weight != 1.0 {
+                    return None;
+                }
+                // Which one is not foreseen: no branch for that.
+                t.textures[usize::from(weight == 1.0)].constant()
+            }
+            SpectrumTexture::Dots(t) => t.choose(at).constant(),
+            _ => None,
+        }
+    }
+
     fn eval_float(&self, texture: &FloatTexture, at: &TextureContext) -> f32 {
         let part = |slot: &FloatSlot| self.float(slot, at);
         match texture {
