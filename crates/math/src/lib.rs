@@ -9,6 +9,7 @@ mod id;
 mod motion;
 mod octahedral;
 pub mod ops;
+mod prefetch;
 mod ray;
 mod scalar;
 mod spherical;
@@ -21,6 +22,7 @@ pub use glam::{Affine3A, DVec2, DVec3, Mat3, Mat4, Quat, UVec2, Vec2, Vec3, Vec3
 pub use id::Id;
 pub use motion::{Key, Motion, Trs};
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere};
+pub use prefetch::prefetch;
 pub use ray::{Ray, offset_ray_origin};
 pub use scalar::{find_interval, gamma, lerp, next_up, sqr};
 pub use spherical::{

@@ -8,7 +8,7 @@ pub use triangle_mesh::TriangleMesh;
 pub(crate) use triangle_mesh::is_degenerate;
 
 use rayon::prelude::*;
-use tenfold_math::{Transform, Vec2, Vec3};
+use tenfold_math::{Transform, Vec2, Vec3, prefetch};
 
 /// What a mesh is made from, still in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -214,6 +214,14 @@ impl<const N: usize> Mesh<N> {
     #[inline]
     pub(crate) fn separate_positions(&self, primitive: usize) -> Option<&[Vec3; N]> {
         if self.is_separate { self.parts.positions[N * primitive..].first_chunk() } else { None }
+    }
+
+    /// Begins to load the vertex positions of a primitive, where they lie beside each other.
+    #[inline]
+    pub(crate) fn prefetch(&self, primitive: usize) {
+        if let Some(positions) = self.separate_positions(primitive) {
+            prefetch(positions);
+        }
     }
 
     /// Vertex normals of a primitive, of any length.

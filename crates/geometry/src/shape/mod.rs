@@ -70,6 +70,16 @@ impl Shape {
             Self::Patches(mesh) => Primitive::Patch(BilinearPatch::new(mesh, index)),
         }
     }
+
+    /// Begins to load the primitive with the given index, of a mesh whose vertices are [`separated`](crate::Mesh::separated).
+    #[inline]
+    pub fn prefetch(&self, index: usize) {
+        match self {
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => {}
+            Self::Triangles(mesh) => mesh.prefetch(index),
+            Self::Patches(mesh) => mesh.prefetch(index),
+        }
+    }
 }
 
 /// Where a ray meets a single primitive.

@@ -192,6 +192,12 @@ impl DiffuseAreaLight {
         self.is_sampled_evenly(strategy) && self.emitter().samples_from(slots, from, u, out)
     }
 
+    /// Begins to load its surface.
+    #[inline]
+    pub(super) fn prefetch(&self) {
+        self.emitting.surface.prefetch(self.primitive as usize);
+    }
+
     /// The light as a ball that [`DiffuseAreaLight::sample`] samples as such, where it is one.
     #[inline]
     pub(super) fn ball(&self, strategy: LightStrategy) -> Option<&Ball> {

@@ -26,6 +26,12 @@ impl EmittingSurface {
         Self { shape, rectangles }
     }
 
+    /// Begins to load the primitive `primitive`.
+    #[inline]
+    pub(super) fn prefetch(&self, primitive: usize) {
+        self.shape.prefetch(primitive);
+    }
+
     /// The primitive `primitive`.
     #[inline]
     pub(super) fn emitter(&self, primitive: usize) -> Emitter<'_> {

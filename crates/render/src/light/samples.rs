@@ -3,7 +3,7 @@
 use super::lights::{Choice, Lights};
 use super::{DiffuseAreaLight, Light, LightSample, LightStrategy, ShadowRay};
 use tenfold_geometry::{Balls, ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
-use tenfold_math::{Floats, Id, Rays, Slots, Vec2, Vec2s, Vec3s, WIDTH, vectorized};
+use tenfold_math::{Floats, Id, Rays, Slots, Vec2, Vec2s, Vec3s, WIDTH, prefetch, vectorized};
 use tenfold_spectrum::{SampledWavelengths, Spectra};
 
 /// With fewer points that see the same light, each is served by itself.
@@ -57,13 +57,18 @@ impl Lights {
         let mut choices = [const { Choice { light: 0, pmf: 0.0 } }; WIDTH];
         let (mut left, mut balls) = (Slots::NONE, Slots::NONE);
         self.choose_for(strategy, slots, from, u_choice, |slot, choice| {
-            if let Some(ball) = self.area(&choice).and_then(|area| area.ball(strategy)) {
-                out.balls.set(slot, ball);
-                balls.insert(slot);
-            }
+            prefetch(self.get(Id::new(choice.light)));
             choices[slot] = choice;
             left.insert(slot);
         });
+        for slot in left {
+            let Some(area) = self.area(&choices[slot]) else { continue };
+            area.prefetch();
+            if let Some(ball) = area.ball(strategy) {
+                out.balls.set(slot, ball);
+                balls.insert(slot);
+            }
+        }
         let mut lit = Slots::NONE;
         if balls.len() >= WORTHWHILE {
             let seen = out.balls.samples_from(balls, from, u, &mut out.points);

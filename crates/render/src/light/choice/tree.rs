@@ -6,7 +6,7 @@ use super::bounds::LightBounds;
 use super::clusters::{Clusters, LANES};
 use super::split::split;
 use tenfold_geometry::{ReferencePoint, ReferencePoints};
-use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots};
+use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots, prefetch};
 
 /// Depth from which groups are halved, so that no light is very deep.
 const HALVE_FROM: usize = 10;
@@ -173,7 +173,12 @@ impl LightTree {
         let mut under_way = slots;
         while !under_way.is_empty() {
             under_way = under_way.keep(|slot| match self.descend(&mut descents[slot], &from.get(slot)) {
-                Some(None) => true,
+                Some(None) => {
+                    if let Some(node) = self.nodes.get(descents[slot].node as usize) {
+                        prefetch(node);
+                    }
+                    true
+                }
                 Some(Some(sample)) => {
                     take(slot, sample);
                     false
