@@ -35,6 +35,12 @@ impl Slots {
         self.0 |= 1 << slot;
     }
 
+    /// Adds a slot where a condition holds, without a branch.
+    #[inline]
+    pub fn insert_if(&mut self, slot: usize, condition: bool) {
+        self.0 |= u16::from(condition) << slot;
+    }
+
     /// Whether a slot is among them.
     #[inline]
     pub fn contains(self, slot: usize) -> bool {

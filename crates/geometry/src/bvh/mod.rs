@@ -5,6 +5,7 @@
 
 mod build;
 mod course;
+mod interleaved;
 mod layout;
 mod memory;
 mod node;

@@ -62,6 +62,8 @@ pub(super) enum Kind {
 }
 
 impl Child {
+    /// The first node.
+    pub(super) const ROOT: Self = Self(0);
     /// No child; its box is empty, so that no ray gets here.
     pub(super) const EMPTY: Self = Self(u32::MAX);
     /// Indices are below this.
@@ -75,6 +77,12 @@ impl Child {
     #[inline(always)]
     pub(super) fn is_node(self) -> bool {
         self.0 >> 30 == Kind::Node as u32
+    }
+
+    /// Whether it is any kind of leaf.
+    #[inline(always)]
+    pub(super) fn is_leaf(self) -> bool {
+        !self.is_node() & (self != Self::EMPTY)
     }
 
     #[inline(always)]

@@ -39,12 +39,11 @@ pub(super) trait Simd {
     /// others on the stack, the farthest first. `near` is nowhere negative.
     fn push_sorted(stack: &mut Stack, mask: u32, near: Self::F8, children: &[u32; WIDTH]) -> u32;
 
+    /// Puts the children whose bits are set in `mask` on the stack, the farthest first, without branches.
+    fn push_all_sorted(stack: &mut Stack, mask: u32, near: Self::F8, children: &[u32; WIDTH]);
+
     /// Puts the children whose bits are set in `mask` on the stack, those of later slots first, at no distance.
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]);
-
-    /// Begins to load a node or a block of triangles, where there are instructions for that.
-    #[inline(always)]
-    fn prefetch<T>(_: &T) {}
 }
 
 /// The bits that are set in an index, the highest first: for [`Simd::push`].
@@ -71,7 +70,12 @@ pub(super) struct Portable;
 impl Simd for Portable {
     type F8 = Array;
 
-    fn push_sorted(stack: &mut Stack, mut mask: u32, near: Array, children: &[u32; WIDTH]) -> u32 {
+    fn push_sorted(stack: &mut Stack, mask: u32, near: Array, children: &[u32; WIDTH]) -> u32 {
+        Self::push_all_sorted(stack, mask, near, children);
+        stack.pop_any().0
+    }
+
+    fn push_all_sorted(stack: &mut Stack, mut mask: u32, near: Array, children: &[u32; WIDTH]) {
         let mut keys = [0; WIDTH];
         let mut n = 0;
         while mask != 0 {
@@ -87,8 +91,7 @@ impl Simd for Portable {
             n += 1;
         }
         let child = |key: u32| children[key as usize % WIDTH];
-        keys[..n - 1].iter().for_each(|&key| stack.push(key, child(key)));
-        child(keys[n - 1])
+        keys[..n].iter().for_each(|&key| stack.push(key, child(key)));
     }
 
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
@@ -203,21 +206,15 @@ mod avx2 {
         }
 
         #[inline(always)]
-        fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
+        fn push_all_sorted(stack: &mut Stack, mask: u32, near: Vec8, children: &[u32; WIDTH]) {
             // SAFETY: the machine has AVX2, or this type is not used.
-            unsafe { push(stack, mask, children) }
+            unsafe { push_all_sorted(stack, mask, near.0, children) }
         }
 
         #[inline(always)]
-        fn prefetch<T>(what: &T) {
-            const LINE: usize = 64;
-            // Of blocks all but the line with nothing but names.
-            const MOST: usize = 5;
-            let start = std::ptr::from_ref(what).cast::<i8>();
-            for line in 0..size_of::<T>().div_ceil(LINE).min(MOST) {
-                // SAFETY: it lies within what is referred to, and every machine with AVX2 has the instruction.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line * LINE)) };
-            }
+        fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
+            // SAFETY: the machine has AVX2, or this type is not used.
+            unsafe { push(stack, mask, children) }
         }
     }
 
@@ -240,12 +237,8 @@ mod avx2 {
     #[inline]
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
     fn push_sorted(stack: &mut Stack, mask: u32, near: __m256, children: &[u32; WIDTH]) -> u32 {
-        let slots = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-        let within = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
-        // As `Stack::key`.
-        let distance = _mm256_and_si256(_mm256_castps_si256(near), _mm256_set1_epi32(!7));
-        let keys = _mm256_or_si256(distance, _mm256_or_si256(slots, _mm256_set1_epi32(i32::MIN)));
+        let (keys, within) = (keys(near), lanes(mask));
+        // Found by itself: that takes less time than to sort.
         let nearest = {
             let keys = _mm256_or_si256(keys, _mm256_xor_si256(within, _mm256_set1_epi32(-1)));
             let m = _mm_min_epu32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys));
@@ -253,7 +246,39 @@ mod avx2 {
             let m = _mm_min_epu32(m, _mm_shuffle_epi32::<0b10_11_00_01>(m));
             children[_mm_cvtsi128_si32(m) as usize % WIDTH]
         };
-        let mut v = _mm256_and_si256(keys, within);
+        write_sorted(stack, _mm256_and_si256(keys, within), children);
+        stack.grow(mask.count_ones() as usize - 1);
+        nearest
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn push_all_sorted(stack: &mut Stack, mask: u32, near: __m256, children: &[u32; WIDTH]) {
+        write_sorted(stack, _mm256_and_si256(keys(near), lanes(mask)), children);
+        stack.grow(mask.count_ones() as usize);
+    }
+
+    /// The lanes whose bits are set.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn lanes(mask: u32) -> __m256i {
+        let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits)
+    }
+
+    /// As `Stack::key`.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn keys(near: __m256) -> __m256i {
+        let slots = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let distance = _mm256_and_si256(_mm256_castps_si256(near), _mm256_set1_epi32(!7));
+        _mm256_or_si256(distance, _mm256_or_si256(slots, _mm256_set1_epi32(i32::MIN)))
+    }
+
+    /// Writes keys and their children to the room on the stack, the largest key first.
+    #[inline]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn write_sorted(stack: &mut Stack, mut v: __m256i, children: &[u32; WIDTH]) {
         macro_rules! stage {
             ($other:expr, $high:literal) => {
                 let other = $other;
@@ -277,8 +302,6 @@ mod avx2 {
             _mm256_storeu_si256(keys.as_mut_ptr().cast(), v);
             _mm256_storeu_si256(children.as_mut_ptr().cast(), sorted);
         }
-        stack.grow(mask.count_ones() as usize - 1);
-        nearest
     }
 
     #[derive(Copy, Clone)]

@@ -9,7 +9,7 @@ use super::{
     triangles::Shear,
 };
 use crate::ShapeHit;
-use tenfold_math::gamma;
+use tenfold_math::{Vec3, gamma, prefetch};
 
 /// Which instructions to use. The results are the same.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -59,46 +59,47 @@ pub(crate) trait Visitor {
 }
 
 /// A ray prepared for boxes.
-struct Slabs<V> {
-    origin: [V; 3],
-    inverse: [V; 3],
+#[derive(Copy, Clone)]
+pub(super) struct Slabs {
+    origin: Vec3,
+    inverse: Vec3,
     /// The inverse for the planes where the ray leaves.
-    inverse_far: [V; 3],
-    /// The node's rows with the planes that the ray meets first and last on each axis.
-    near: [usize; 3],
-    far: [usize; 3],
+    inverse_far: Vec3,
+    /// The node's rows with the planes that the ray meets first on each axis; the other of the two rows has those it meets last.
+    near: [u32; 3],
 }
 
 /// Room for the rounding of the products that give distances to planes (Ize 2013) and of the triangle test (see `padded`): boxes seem longer
 /// by this factor, and so does the way that the ray may go. So no rounding decides which hits are found.
 pub(crate) const LONGER: f32 = 1.0 + 2.0 * gamma(8);
 
-impl<V: Vector> Slabs<V> {
+impl Slabs {
     #[inline(always)]
-    fn new(course: &impl Course) -> Self {
-        let ray = course.ray();
-        let (d, [x, y, z]) = (ray.direction, course.inverse().to_array());
-        let near = |axis: usize, d: f32| 2 * axis + (d.to_bits() >> 31) as usize;
-        let near = [near(0, d.x), near(1, d.y), near(2, d.z)];
+    pub(super) fn new(course: &impl Course) -> Self {
+        let (ray, inverse) = (course.ray(), course.inverse());
+        let near = |axis: u32, d: f32| 2 * axis + (d.to_bits() >> 31);
+        let d = ray.direction;
         Self {
-            origin: [V::splat(ray.origin.x), V::splat(ray.origin.y), V::splat(ray.origin.z)],
-            inverse: [V::splat(x), V::splat(y), V::splat(z)],
-            inverse_far: [V::splat(x * LONGER), V::splat(y * LONGER), V::splat(z * LONGER)],
-            near,
-            far: [near[0] ^ 1, near[1] ^ 1, near[2] ^ 1],
+            origin: ray.origin,
+            inverse,
+            inverse_far: inverse * LONGER,
+            near: [near(0, d.x), near(1, d.y), near(2, d.z)],
         }
     }
 
     /// Which children's boxes the ray meets before `t_max`, and where it enters them.
     #[inline(always)]
-    fn intersect(&self, node: &Node, t_max: f32) -> (u32, V) {
-        let row = |row: usize, axis: usize| V::load(node.row(row)).sub(self.origin[axis]);
-        let [x, y, z] = self.inverse;
-        let near = row(self.near[0], 0).mul(x).max(row(self.near[1], 1).mul(y));
-        let near = near.max(row(self.near[2], 2).mul(z).max(V::splat(0.0)));
-        let [x, y, z] = self.inverse_far;
-        let far = row(self.far[0], 0).mul(x).min(row(self.far[1], 1).mul(y));
-        let far = far.min(row(self.far[2], 2).mul(z).min(V::splat(t_max * LONGER)));
+    pub(super) fn intersect<V: Vector>(&self, node: &Node, t_max: f32) -> (u32, V) {
+        let splat = |v: Vec3| [V::splat(v.x), V::splat(v.y), V::splat(v.z)];
+        let origin = splat(self.origin);
+        let near_row = |axis: usize| V::load(node.row(self.near[axis] as usize)).sub(origin[axis]);
+        let far_row = |axis: usize| V::load(node.row(self.near[axis] as usize ^ 1)).sub(origin[axis]);
+        let [x, y, z] = splat(self.inverse);
+        let near = near_row(0).mul(x).max(near_row(1).mul(y));
+        let near = near.max(near_row(2).mul(z).max(V::splat(0.0)));
+        let [x, y, z] = splat(self.inverse_far);
+        let far = far_row(0).mul(x).min(far_row(1).mul(y));
+        let far = far.min(far_row(2).mul(z).min(V::splat(t_max * LONGER)));
         (near.le(far), near)
     }
 }
@@ -128,23 +129,19 @@ impl Bvh {
     #[inline(always)]
     fn traverse_with<S: Simd, W: Visitor>(&self, ray: &impl Course, visitor: &mut W) -> bool {
         let Some(root) = self.nodes.first() else { return false };
-        let slabs = Slabs::<S::F8>::new(ray);
-        let (mut mask, mut near) = slabs.intersect(root, visitor.t_max());
+        let slabs = Slabs::new(ray);
+        let (mut mask, mut near) = slabs.intersect::<S::F8>(root, visitor.t_max());
         // Many rays miss everything: they should not pay for what follows.
         if mask == 0 {
             return false;
         }
         let shear = Shear::<S::F8>::new(ray.shear());
         let mut stack = Stack::new();
-        let pop = |stack: &mut Stack, visitor: &W| match W::ANY {
-            true => stack.pop_any(),
-            false => stack.pop(visitor.t_max()),
-        };
         let large = self.nodes.len() >= LARGE;
         let mut node = root;
         loop {
             let mut child = if mask == 0 {
-                pop(&mut stack, visitor)
+                Self::pop(&mut stack, visitor)
             } else if W::ANY {
                 S::push(&mut stack, mask & (mask - 1), node.children());
                 Child(node.children()[mask.trailing_zeros() as usize % WIDTH])
@@ -156,32 +153,48 @@ impl Bvh {
                 Child(S::push_sorted(&mut stack, mask, near, node.children()))
             };
             if large && mask & mask.wrapping_sub(1) != 0 {
-                self.prefetch::<S>(stack.top());
+                self.prefetch(stack.top());
             }
             while !child.is_node() {
-                let over = match child.kind() {
-                    Kind::Triangles => Self::visit_triangles(&shear, &self.blocks[child.index()], visitor),
-                    Kind::Shape => visitor.shape(self.shapes[child.index()]),
-                    Kind::Placement if child == Child::EMPTY => return false,
-                    Kind::Placement => visitor.placement(child.index()),
-                    Kind::Node => false,
-                };
-                if over {
+                if child == Child::EMPTY {
+                    return false;
+                }
+                if self.visit(child, &shear, visitor) {
                     return true;
                 }
-                child = pop(&mut stack, visitor);
+                child = Self::pop(&mut stack, visitor);
             }
             node = &self.nodes[child.index()];
             (mask, near) = slabs.intersect(node, visitor.t_max());
         }
     }
 
+    /// The next child that waits; [`Child::EMPTY`] at the end.
+    #[inline(always)]
+    pub(super) fn pop<W: Visitor>(stack: &mut Stack, visitor: &W) -> Child {
+        match W::ANY {
+            true => stack.pop_any(),
+            false => stack.pop(visitor.t_max()),
+        }
+    }
+
+    /// Shows the visitor a leaf. Returns whether the traversal is over.
+    #[inline(always)]
+    pub(super) fn visit<V: Vector>(&self, leaf: Child, shear: &Shear<V>, visitor: &mut impl Visitor) -> bool {
+        match leaf.kind() {
+            Kind::Triangles => Self::visit_triangles(shear, &self.blocks[leaf.index()], visitor),
+            Kind::Shape => visitor.shape(self.shapes[leaf.index()]),
+            Kind::Placement => visitor.placement(leaf.index()),
+            Kind::Node => false,
+        }
+    }
+
     /// Begins to load what a child refers to.
     #[inline(always)]
-    fn prefetch<S: Simd>(&self, child: Child) {
+    pub(super) fn prefetch(&self, child: Child) {
         match child.kind() {
-            Kind::Node => S::prefetch(&self.nodes[child.index()]),
-            Kind::Triangles => S::prefetch(&self.blocks[child.index()]),
+            Kind::Node => prefetch(&self.nodes[child.index()]),
+            Kind::Triangles => prefetch(&self.blocks[child.index()].axes),
             Kind::Shape | Kind::Placement => {}
         }
     }

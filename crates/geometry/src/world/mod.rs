@@ -13,6 +13,7 @@ use crate::{
 use few::Few;
 use hierarchies::Hierarchies;
 use search::{Search, State};
+use std::array::from_fn;
 use tenfold_math::{Bounds3, Floats, Id, Motion, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH};
 
 /// A shape in a world: what [`PrimitiveId::geometry`] names.
@@ -82,12 +83,19 @@ pub struct WorldStats {
     pub bytes: usize,
 }
 
+/// Hierarchies of so many nodes are slow enough to load that going through them with several rays at once is worth what it takes.
+const INTERLEAVED_FROM: usize = 1 << 17;
+/// And with so many rays.
+const FEWEST_INTERLEAVED: usize = 4;
+
 /// Everything that rays can hit.
 #[derive(Debug)]
 pub struct World {
     geometries: Vec<Geometry>,
     hierarchies: Hierarchies,
     few: Option<Few>,
+    /// Whether several rays go through the hierarchy at once.
+    interleaved: bool,
     level: Level,
     bounds: Bounds3,
     stats: WorldStats,
@@ -102,13 +110,22 @@ impl World {
         let (hierarchies, stats) = Hierarchies::build(&desc)?;
         let bounds = hierarchies.top.bounds();
         let few = if desc.instances.is_empty() { Few::of(&desc.geometries) } else { None };
-        Ok(Self { geometries: desc.geometries, hierarchies, few, level: Level::detect(), bounds, stats })
+        let interleaved = hierarchies.top.node_count() >= INTERLEAVED_FROM;
+        let level = Level::detect();
+        Ok(Self { geometries: desc.geometries, hierarchies, few, interleaved, level, bounds, stats })
     }
 
     /// The same world without vector instructions: it answers with the same bits.
     #[must_use]
     pub fn portable(mut self) -> Self {
         self.level = Level::Portable;
+        self
+    }
+
+    /// The same world, whose rays in slots go through the hierarchy at once, however small it is: it answers with the same bits.
+    #[must_use]
+    pub fn interleaved(mut self) -> Self {
+        (self.few, self.interleaved) = (None, true);
         self
     }
 
@@ -159,6 +176,11 @@ impl World {
         if let Some(few) = &self.few {
             return few.intersect(&self.geometries, slots, rays, courses, hits);
         }
+        if self.interleaves(slots) {
+            let t_max = [f32::INFINITY; WIDTH];
+            return self
+                .query_slots::<false>(slots, rays, courses, &t_max, filter, |slot, hit| hits[slot] = hit);
+        }
         for slot in slots {
             let course = courses.of(slot, rays.get(slot));
             hits[slot] = self.query::<false>(&course, f32::INFINITY, |candidate| filter(slot, candidate));
@@ -183,6 +205,13 @@ impl World {
         courses.prepare(rays);
         if let Some(few) = &self.few {
             return few.occluded(&self.geometries, slots, rays, courses, t_max);
+        }
+        if self.interleaves(slots) {
+            let mut occluded = Slots::NONE;
+            self.query_slots::<true>(slots, rays, courses, t_max, filter, |slot, hit| {
+                occluded.insert_if(slot, hit.is_some());
+            });
+            return occluded;
         }
         slots.keep(|slot| {
             let course = courses.of(slot, rays.get(slot));
@@ -211,6 +240,40 @@ impl World {
         };
         self.hierarchies.top.traverse(self.level, course, &mut search);
         search.state.best
+    }
+
+    /// Whether [`World::query_slots`] is the way for the rays in `slots`.
+    #[inline]
+    fn interleaves(&self, slots: Slots) -> bool {
+        self.interleaved && slots.len() >= FEWEST_INTERLEAVED
+    }
+
+    /// [`World::query`] for the rays in `slots`, whose courses are prepared, at once: `take` is told what each has found.
+    fn query_slots<const ANY: bool>(
+        &self,
+        slots: Slots,
+        rays: &Rays,
+        courses: &RayCourses,
+        t_max: &Floats,
+        filter: impl Fn(usize, &Candidate<'_>) -> bool,
+        mut take: impl FnMut(usize, Option<Hit>),
+    ) {
+        let courses = from_fn(|slot| courses.of(slot, rays.get(slot)));
+        let filters: [_; WIDTH] = from_fn(|slot| {
+            let filter = &filter;
+            move |candidate: &Candidate<'_>| filter(slot, candidate)
+        });
+        let mut searches: [_; WIDTH] = from_fn(|slot| Search::<ANY, true, _> {
+            world: self,
+            ray: courses[slot].ray(),
+            local: courses[slot].ray(),
+            instance: InstanceId::NONE,
+            filter: &filters[slot],
+            state: State { best: None, t_max: t_max[slot] },
+        });
+        let leading = slots.keep(|slot| leads_somewhere(courses[slot].ray(), t_max[slot]));
+        self.hierarchies.top.traverse_slots(self.level, leading, &courses, &mut searches);
+        slots.for_each(|slot| take(slot, searches[slot].state.best));
     }
 
     fn to_local(&self, instance: InstanceId, ray: &Ray) -> Ray {
