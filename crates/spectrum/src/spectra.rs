@@ -74,7 +74,11 @@ impl SpectraToEvaluate {
 
     /// The values of all at the wavelengths `lambda` in nm, which those of [`SpectraToEvaluate::set`] are.
     pub fn evaluate(&self, lambda: &Spectra, out: &mut Spectra) {
-        evaluate(self, lambda, out);
+        if self.is_sigmoid == [false; WIDTH] {
+            *out = self.values;
+        } else {
+            evaluate(self, lambda, out);
+        }
     }
 }
 

@@ -42,6 +42,9 @@ fn inverse(d: Vec3) -> Vec3 {
     Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z))
 }
 
+/// How many vertices are turned toward the rays of all slots at once.
+pub(crate) const MOST_VERTICES: usize = 16;
+
 /// Room for what the tests of boxes and triangles want to know of the ray in each slot.
 #[derive(Copy, Clone, Debug)]
 pub struct RayCourses {
@@ -51,11 +54,19 @@ pub struct RayCourses {
     pub(crate) axis: [u32; WIDTH],
     /// Their origins by axes permuted so that this one is the last.
     pub(crate) origin: Vec3s,
+    /// Room for vertices in the spaces of these rays.
+    pub(crate) vertices: [Vec3s; MOST_VERTICES],
 }
 
 impl Default for RayCourses {
     fn default() -> Self {
-        Self { inverse: Vec3s::ZERO, shear: Vec3s::ZERO, axis: [0; WIDTH], origin: Vec3s::ZERO }
+        Self {
+            inverse: Vec3s::ZERO,
+            shear: Vec3s::ZERO,
+            axis: [0; WIDTH],
+            origin: Vec3s::ZERO,
+            vertices: [Vec3s::ZERO; MOST_VERTICES],
+        }
     }
 }
 

@@ -15,8 +15,8 @@ mod traverse;
 mod triangles;
 
 pub(crate) use build::{Reference, Target, padded};
-pub(crate) use course::Course;
 pub use course::RayCourses;
+pub(crate) use course::{Course, MOST_VERTICES};
 pub(crate) use memory::with_capacity;
 pub(crate) use node::LeafPrimitive;
 pub(crate) use traverse::{LONGER, Level, Visitor};

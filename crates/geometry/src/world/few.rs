@@ -3,7 +3,7 @@
 use super::{Geometry, leads_somewhere};
 use crate::{
     Hit, InstanceId, Primitive, PrimitiveId, ShapeHit,
-    bvh::{LONGER, RayCourses, padded},
+    bvh::{LONGER, MOST_VERTICES, RayCourses, padded},
     mesh::is_degenerate,
     shape::{Ball, Parallelogram, RayShear, ShearedTriangle, permuted, sheared_vertex},
 };
@@ -44,9 +44,6 @@ struct Triangles {
     /// By the places of the vertices.
     corners: Vec<[u8; 3]>,
 }
-
-/// Vertices of a run: more would have a box that is hardly ever missed.
-const MOST_VERTICES: usize = 16;
 
 impl Triangles {
     /// Adds a triangle if there is room for it. Returns whether there was.
@@ -145,7 +142,7 @@ impl Few {
         geometries: &[Geometry],
         slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
+        courses: &mut RayCourses,
         hits: &mut [Option<Hit>; WIDTH],
     ) {
         let mut found = Found::nothing();
@@ -168,7 +165,7 @@ impl Few {
         geometries: &[Geometry],
         slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
+        courses: &mut RayCourses,
         t_max: &Floats,
     ) -> Slots {
         let mut found = Found::nothing();
@@ -218,7 +215,7 @@ vectorized! {
         geometries: &[Geometry],
         slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
+        courses: &mut RayCourses,
         t_max: &Floats,
         any: bool,
         found: &mut Found,
@@ -228,29 +225,29 @@ vectorized! {
             let is_live = (bits >> i & 1 == 1) & leads_somewhere(&rays.get(i), t_max[i]);
             found.t_max[i] = if is_live { t_max[i] } else { 0.0 };
         }
-        let mut sheared = [Vec3s::ZERO; MOST_VERTICES];
+        let RayCourses { inverse, shear, axis, origin, vertices: turned } = courses;
         for run in &few.runs {
             let mut entered = [false; WIDTH];
             for i in 0..WIDTH {
-                entered[i] = enters(&run.bounds, rays.origin.get(i), courses.inverse.get(i), found.t_max[i]);
+                entered[i] = enters(&run.bounds, rays.origin.get(i), inverse.get(i), found.t_max[i]);
             }
             if entered == [false; WIDTH] {
                 continue;
             }
             match &run.primitives {
                 Kind::Triangles(triangles) => {
-                    for (vertex, out) in triangles.vertices.iter().zip(&mut sheared) {
+                    for (vertex, out) in triangles.vertices.iter().zip(turned.iter_mut()) {
                         for i in 0..WIDTH {
-                            let p = permuted(*vertex, courses.axis[i]) - courses.origin.get(i);
-                            out.set(i, sheared_vertex(p, courses.shear.get(i)));
+                            let p = permuted(*vertex, axis[i]) - origin.get(i);
+                            out.set(i, sheared_vertex(p, shear.get(i)));
                         }
                     }
                     for (place, corners) in (run.first..).zip(&triangles.corners) {
-                        let vertices = corners.map(|i| &sheared[usize::from(i) % MOST_VERTICES]);
-                        let flat = hit_triangle(vertices, place, &entered, courses, found);
+                        let vertices = corners.map(|i| &turned[usize::from(i) % MOST_VERTICES]);
+                        let flat = hit_triangle(vertices, place, &entered, shear, found);
                         if flat != [false; WIDTH] {
                             let corners = corners.map(|i| triangles.vertices[usize::from(i)]);
-                            hit_flat(&corners, place, &flat, rays, courses, found);
+                            hit_flat(&corners, place, &flat, rays, axis, shear, found);
                         }
                     }
                 }
@@ -300,7 +297,7 @@ fn hit_triangle(
     vertices: [&Vec3s; 3],
     place: u32,
     entered: &[bool; WIDTH],
-    courses: &RayCourses,
+    shear: &Vec3s,
     found: &mut Found,
 ) -> [bool; WIDTH] {
     let mut flat = [false; WIDTH];
@@ -317,7 +314,7 @@ fn hit_triangle(
     for i in 0..WIDTH {
         let triangle =
             ShearedTriangle { vertices: vertices.map(|v| v.get(i)), edges: edges.get(i).to_array() };
-        let (hit, is_in_front) = triangle.hit(courses.shear.z[i]);
+        let (hit, is_in_front) = triangle.hit(shear.z[i]);
         flat[i] = inside[i] & (triangle.determinant() == 0.0);
         found.take(i, hit, place, inside[i] & !flat[i] & is_in_front & (hit.t < found.t_max[i]));
     }
@@ -332,13 +329,13 @@ fn hit_flat(
     place: u32,
     is_flat: &[bool; WIDTH],
     rays: &Rays,
-    courses: &RayCourses,
+    axis: &[u32; WIDTH],
+    shear: &Vec3s,
     found: &mut Found,
 ) {
     for slot in (0..WIDTH).filter(|&slot| is_flat[slot]) {
-        let (origin, axis) = (rays.origin.get(slot), courses.axis[slot] as usize);
-        let shear = RayShear::known(origin, axis, courses.shear.get(slot));
-        if let Some(hit) = shear.intersect(*corners, found.t_max[slot]) {
+        let ray = RayShear::known(rays.origin.get(slot), axis[slot] as usize, shear.get(slot));
+        if let Some(hit) = ray.intersect(*corners, found.t_max[slot]) {
             found.take(slot, hit, place, true);
         }
     }
