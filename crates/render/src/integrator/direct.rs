@@ -1,7 +1,8 @@
 //! Light from points sampled on lights.
 
 use super::{
-    PathTracer, Sample, Strategies, Workspace, passing::Chance, wave::Vertices, weights::weigh_sampled,
+    PathTracer, Sample, Strategies, Workspace, kinds, passing::Chance, vertices::Vertices,
+    weights::weigh_sampled,
 };
 use crate::bxdf::BsdfValue;
 use tenfold_geometry::Candidate;
@@ -35,7 +36,7 @@ impl<'a> PathTracer<'a> {
         if lit.is_empty() {
             return;
         }
-        wave.surfaces.evaluate(vertices, &wave.wo, &light.wi, scattering);
+        kinds::evaluate(&wave.surfaces, vertices, &wave.wo, &light.wi, scattering);
         let mut parts = [false; WIDTH];
         for slot in lit.without(vertices.wide()) {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };

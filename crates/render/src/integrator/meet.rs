@@ -6,7 +6,8 @@ use super::{
     path::Path,
     spectral::{DispersionRule, Lanes},
     tracer::RayCounts,
-    wave::{Vertices, Wave},
+    vertices::Vertices,
+    wave::Wave,
     weights::Weights,
 };
 use crate::{

@@ -11,6 +11,7 @@ mod boundary;
 mod combine;
 mod direct;
 mod even;
+mod kinds;
 mod meet;
 mod metal;
 mod passing;
@@ -20,6 +21,7 @@ mod spectral;
 mod strategies;
 mod surfaces;
 mod tracer;
+mod vertices;
 mod wave;
 mod weights;
 

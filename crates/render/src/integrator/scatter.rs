@@ -1,10 +1,10 @@
 //! Where paths go on to, and whether.
 
 use super::{
-    PathTracer, Sample, Workspace,
+    PathTracer, Sample, Workspace, kinds,
     path::{Path, Waiting},
     spectral::Lanes,
-    wave::Vertices,
+    vertices::Vertices,
     weights::{Weights, advance},
 };
 use crate::bxdf::{Bsdf, BsdfSample, Lobe};
@@ -29,7 +29,7 @@ impl<'a> PathTracer<'a> {
         let u_lobe = wave.numbers_1d(group, vertices.boundary.or(choosing), Dimension::scatter_lobe);
         let (surfaces, rays) = (&wave.surfaces, &mut wave.rays);
         let eta_scale = &mut wave.weights.eta_scale;
-        surfaces.scatter(vertices, &wave.wo, &wave.from, &u_lobe, &u, rays, eta_scale, scattering);
+        kinds::scatter(surfaces, vertices, &wave.wo, &wave.from, &u_lobe, &u, rays, eta_scale, scattering);
         let mut scattered = vertices.wide().keep(|slot| scattering.hero_pdf[slot] > 0.0);
         for slot in vertices.other {
             let Some(bsdf) = &wave.bsdfs[slot] else { continue };

@@ -3,6 +3,7 @@ use super::{
     path::{Path, Waiting},
     spectral::Lanes,
     surfaces::Surfaces,
+    vertices::Vertices,
     weights::{WaveWeights, Weights},
 };
 use crate::bxdf::{Bsdf, WideBxdf};
@@ -31,31 +32,6 @@ pub(super) struct Wave<'a> {
     pub(super) surfaces: Surfaces,
     /// How light is scattered at the others.
     pub(super) bsdfs: [Option<Bsdf<'a>>; WIDTH],
-}
-
-/// The slots whose paths have come to a vertex from which they go on, by what they met.
-#[derive(Copy, Clone, Debug, Default)]
-pub(super) struct Vertices {
-    /// At even reflectors.
-    pub(super) even: Slots,
-    /// At rough boundaries of transparent bodies.
-    pub(super) boundary: Slots,
-    /// At rough metals.
-    pub(super) metal: Slots,
-    /// At other surfaces.
-    pub(super) other: Slots,
-    /// Those of `other` that scatter not only in single directions.
-    pub(super) glossy: Slots,
-    /// Those of `other` whose wavelengths part.
-    pub(super) parting: Slots,
-}
-
-impl Vertices {
-    /// Those whose scattering is computed side by side.
-    #[inline]
-    pub(super) fn wide(&self) -> Slots {
-        self.even.or(self.boundary).or(self.metal)
-    }
 }
 
 impl Default for Wave<'_> {
