@@ -14,7 +14,7 @@ mod stack;
 mod traverse;
 mod triangles;
 
-pub(crate) use build::{Reference, Target, padded};
+pub(crate) use build::{Reference, References, Target, padded};
 pub use course::RayCourses;
 pub(crate) use course::{Course, MOST_VERTICES};
 pub(crate) use memory::with_capacity;
@@ -38,10 +38,10 @@ impl Bvh {
     /// A hierarchy over `references`; `positions` gives the corners of the triangles among them. The result does not depend on the number of threads.
     /// There must be less than 2³⁰ references.
     pub(crate) fn build(
-        mut references: Vec<Reference>,
+        references: &impl References,
         positions: impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync,
     ) -> Self {
-        if references.is_empty() {
+        if references.len() == 0 {
             return Self {
                 nodes: Vec::new(),
                 blocks: Vec::new(),
@@ -49,16 +49,9 @@ impl Bvh {
                 bounds: Bounds3::EMPTY,
             };
         }
-        let extra = build::presplit(&mut references, &positions);
-        let len = references.len();
-        references.reserve_exact(extra);
-        references.clear();
-        let references = &mut references.spare_capacity_mut()[..len + extra];
-        // SAFETY: the first were initialised, and the builder leaves its leaves so.
-        unsafe {
-            let (bounds, tree) = build::build(references, len, &positions);
-            layout::lay_out(&tree, bounds, references, &positions)
-        }
+        let (mut references, bounds, tree) = build::build(references, &positions);
+        // SAFETY: the builder leaves what leaves name initialised.
+        unsafe { layout::lay_out(&tree, bounds, references.spare_capacity_mut(), &positions) }
     }
 
     /// A box around everything.

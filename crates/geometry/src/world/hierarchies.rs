@@ -3,11 +3,11 @@
 use super::{Geometry, WorldDesc, WorldError, WorldStats};
 use crate::{
     Shape,
-    bvh::{Bvh, LONGER, LeafPrimitive, Reference, Target, padded, with_capacity},
+    bvh::{Bvh, LONGER, LeafPrimitive, Reference, References, Target, padded},
     mesh::is_degenerate,
 };
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Range};
 use tenfold_math::{Bounds3, Motion, Ray, Transform, Vec3};
 
 /// Where a placement goes.
@@ -191,34 +191,142 @@ fn build_still(geometries: &[Geometry], members: &[usize], placements: &[(Bounds
         Shape::Triangles(mesh) => mesh.positions(id.index as usize),
         _ => [Vec3::ZERO; 3],
     };
-    let reference =
-        |bounds: Bounds3, target| Reference::new(padded(bounds, bounds.diagonal().max_element()), target);
-    let count = members.iter().map(|&i| geometries[i].shape.len()).sum::<usize>() + placements.len();
-    let mut references = with_capacity(count);
-    references.extend(placements.iter().map(|(bounds, index)| reference(*bounds, Target::Placement(*index))));
-    let mut degenerate = 0;
-    for &i in members {
-        let Geometry { shape, masked, .. } = &geometries[i];
-        let id = |index: usize| LeafPrimitive::new(i as u32, index as u32, *masked);
-        match shape {
-            Shape::Triangles(mesh) => {
-                let areas = || (0..mesh.len()).into_par_iter().filter(|&i| !is_degenerate(mesh.positions(i)));
-                let bounded = |index: usize| {
-                    reference(Bounds3::around(mesh.positions(index)), Target::Triangle(id(index)))
-                };
-                let sound = areas().count();
-                degenerate += mesh.len() - sound;
-                if sound == mesh.len() {
-                    references.par_extend((0..mesh.len()).into_par_iter().map(bounded));
-                } else {
-                    references.par_extend(areas().map(bounded));
-                }
+    let still = Still::new(geometries, members, placements);
+    (Bvh::build(&still, corners), still.left_out.len())
+}
+
+/// What does not move: placements, then primitives but for degenerate triangles.
+struct Still<'a> {
+    geometries: &'a [Geometry],
+    placements: &'a [(Bounds3, u32)],
+    /// Geometries, each behind the number of what comes before its first primitive.
+    members: Vec<(usize, usize)>,
+    /// How many there are with those that are left out.
+    all: usize,
+    /// Of each that is left out, how many come before it that are not.
+    left_out: Vec<u32>,
+}
+
+impl<'a> Still<'a> {
+    fn new(geometries: &'a [Geometry], members: &[usize], placements: &'a [(Bounds3, u32)]) -> Self {
+        let mut still = Self {
+            geometries,
+            placements,
+            members: Vec::with_capacity(members.len()),
+            all: placements.len(),
+            left_out: Vec::new(),
+        };
+        for &geometry in members {
+            let (first, shape) = (still.all, &geometries[geometry].shape);
+            if let Shape::Triangles(mesh) = shape {
+                let degenerate =
+                    (0..mesh.len()).into_par_iter().filter(|&i| is_degenerate(mesh.positions(i)));
+                still.left_out.par_extend(degenerate.map(|i| (first + i) as u32));
             }
-            // Triangles alone have leaves of their own kind.
-            _ => references.extend(
-                (0..shape.len()).map(|i| reference(shape.primitive(i).bounds(), Target::Shape(id(i)))),
-            ),
+            still.members.push((first, geometry));
+            still.all += shape.len();
+        }
+        still.left_out.iter_mut().enumerate().for_each(|(before, number)| *number -= before as u32);
+        still
+    }
+
+    /// Makes those of some numbers, of which none is left out.
+    fn make(&self, range: Range<usize>, to: &mut Vec<Reference>) {
+        let reference =
+            |bounds: Bounds3, target| Reference::new(padded(bounds, bounds.diagonal().max_element()), target);
+        let placements = self.placements.len();
+        let placed = &self.placements[range.start.min(placements)..range.end.min(placements)];
+        to.extend(placed.iter().map(|(bounds, index)| reference(*bounds, Target::Placement(*index))));
+        let from = self.members.partition_point(|(first, _)| *first <= range.start).saturating_sub(1);
+        for &(first, geometry) in self.members[from..].iter().take_while(|(first, _)| *first < range.end) {
+            let Geometry { shape, masked, .. } = &self.geometries[geometry];
+            let id = |index: usize| LeafPrimitive::new(geometry as u32, index as u32, *masked);
+            let part = range.start.saturating_sub(first)..shape.len().min(range.end - first);
+            match shape {
+                Shape::Triangles(mesh) => to.extend(
+                    part.map(|i| reference(Bounds3::around(mesh.positions(i)), Target::Triangle(id(i)))),
+                ),
+                // Triangles alone have leaves of their own kind.
+                _ => to.extend(part.map(|i| reference(shape.primitive(i).bounds(), Target::Shape(id(i))))),
+            }
         }
     }
-    (Bvh::build(references, corners), degenerate)
+}
+
+impl References for Still<'_> {
+    fn len(&self) -> usize {
+        self.all - self.left_out.len()
+    }
+
+    fn read<'a>(&'a self, range: Range<usize>, room: &'a mut Vec<Reference>) -> &'a [Reference] {
+        room.clear();
+        let mut start = range.start;
+        let mut skipped = self.left_out.partition_point(|&before| before as usize <= start);
+        while start < range.end {
+            let end = self.left_out.get(skipped).map_or(range.end, |&before| range.end.min(before as usize));
+            self.make(start + skipped..end + skipped, room);
+            (start, skipped) = (end, skipped + 1);
+        }
+        room
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MeshParts, Sphere, SphereParams, TriangleMesh};
+    use std::sync::Arc;
+    use tenfold_testkit::Rng;
+
+    /// Of `n` triangles, those that `flat` names have no area.
+    fn mesh(n: u32, flat: impl Fn(u32) -> bool, rng: &mut Rng) -> Geometry {
+        let positions = (0..3 * n).map(|_| rng.vec3()).collect();
+        let corner = |i: u32, corner: u32| 3 * i + if flat(i) { 0 } else { corner };
+        let indices = (0..n).flat_map(|i| [0, 1, 2].map(|k| corner(i, k))).collect();
+        let parts = MeshParts { positions, indices, ..MeshParts::default() };
+        let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+        geometry(Shape::Triangles(Arc::new(mesh)))
+    }
+
+    fn geometry(shape: Shape) -> Geometry {
+        Geometry { shape, motion: None, group: None, user: 0, masked: false }
+    }
+
+    #[test]
+    fn any_part_of_what_does_not_move_is_read_alike_without_degenerate_triangles() {
+        let mut rng = Rng::new(1);
+        let geometries = [
+            mesh(50, |i| i == 0 || i % 7 > 4, &mut rng),
+            mesh(3, |_| true, &mut rng),
+            geometry(Shape::Sphere(
+                Sphere::new(Transform::IDENTITY, false, SphereParams::whole(1.0)).unwrap(),
+            )),
+            mesh(0, |_| true, &mut rng),
+            mesh(20, |_| false, &mut rng),
+            mesh(9, |i| i > 5, &mut rng),
+        ];
+        let placements = [(Bounds3::around([Vec3::ZERO, Vec3::ONE]), 3), (Bounds3::around([Vec3::X]), 4)];
+        let still = Still::new(&geometries, &[0, 1, 2, 3, 4, 5], &placements);
+        let mut want: Vec<Target> = placements.iter().map(|p| Target::Placement(p.1)).collect();
+        for (i, Geometry { shape, .. }) in geometries.iter().enumerate() {
+            for index in 0..shape.len() {
+                let id = LeafPrimitive::new(i as u32, index as u32, false);
+                match shape {
+                    Shape::Triangles(mesh) if is_degenerate(mesh.positions(index)) => {}
+                    Shape::Triangles(_) => want.push(Target::Triangle(id)),
+                    _ => want.push(Target::Shape(id)),
+                }
+            }
+        }
+        assert_eq!(still.len(), want.len());
+        assert_eq!(still.left_out.len(), 1 + 7 * 2 + 3 + 3);
+        let mut room = Vec::new();
+        for start in 0..=want.len() {
+            for end in start..=want.len() {
+                let targets: Vec<Target> =
+                    still.read(start..end, &mut room).iter().map(Reference::target).collect();
+                assert_eq!(targets, want[start..end]);
+            }
+        }
+    }
 }

@@ -259,7 +259,8 @@ mod tests {
                 // SAFETY: nothing but items.
                 let home = unsafe { std::slice::from_raw_parts_mut(items.as_mut_ptr().cast(), items.len()) };
                 // SAFETY: as many as there are.
-                let mut pair = unsafe { Pair::new(home, n as usize, room.spare_capacity_mut()) };
+                let mut pair = unsafe { Pair::new(home, n as usize) };
+                pair.furnish(|_| room.spare_capacity_mut());
                 let halves = sort(level, &mut pair, &middles).expect("a plane");
                 // SAFETY: all were written.
                 let pairs = unsafe { pair.swapped(halves.low, n as usize - halves.low, |_| 0.0) };

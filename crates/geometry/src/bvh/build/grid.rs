@@ -7,9 +7,11 @@ use super::{
     hull::Hull,
     pair::Pair,
     reference::Reference,
+    source::{References, for_blocks},
 };
 use crate::bvh::traverse::Level;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// References of a chunk at least, and how many chunks there are at most.
 const CHUNK: usize = 1 << 14;
@@ -117,37 +119,29 @@ impl Cells {
     }
 }
 
-/// As [`bins::around`], on all threads.
-pub(super) fn around_all(level: Level, references: &[Reference]) -> [Hull; 2] {
-    if references.len() <= CHUNK {
-        return bins::around(level, references);
-    }
-    // Minimum and maximum do not depend on the order.
-    references
-        .par_chunks(CHUNK)
-        .map(|chunk| bins::around(level, chunk))
-        .reduce(|| [Hull::EMPTY; 2], |a, b| [a[0].union(&b[0]), a[1].union(&b[1])])
-}
-
 /// Sorts all references into `to`, in the order of the leaves of the tree that is returned. `None`, and nothing is sorted, where the doubled `middles`
 /// coincide.
 pub(super) fn sort(
     level: Level,
-    references: &[Reference],
+    references: &(impl References + ?Sized),
     middles: &Hull,
     to: &mut [MaybeUninit<Reference>],
 ) -> Option<Box<Top>> {
     let grid = Grid::new(middles, references.len());
     let chunk = references.len().div_ceil(CHUNKS).max(CHUNK);
-    let counted: Vec<Vec<Cell>> = references
-        .par_chunks(chunk)
+    let starts = (0..references.len()).step_by(chunk);
+    let chunks: Vec<Range<usize>> = starts.map(|start| start..references.len().min(start + chunk)).collect();
+    let counted: Vec<Vec<Cell>> = chunks
+        .par_iter()
         .map(|chunk| {
             let mut cells = Cells::new(&grid);
-            for reference in chunk {
-                let cell = cells.at(grid.cell(reference));
-                cell.hull = cell.hull.union(reference.hull());
-                cell.count += 1;
-            }
+            for_blocks(references, chunk.clone(), |_, block| {
+                for reference in block {
+                    let cell = cells.at(grid.cell(reference));
+                    cell.hull = cell.hull.union(reference.hull());
+                    cell.count += 1;
+                }
+            });
             cells.cells
         })
         .collect();
@@ -167,7 +161,8 @@ pub(super) fn sort(
     let mut home = Vec::with_capacity(n);
     home.extend(cells.iter().map(|cell| MaybeUninit::new(*cell)));
     // SAFETY: all of them are cells.
-    let pair = unsafe { Pair::new(&mut home, n, other.spare_capacity_mut()) };
+    let mut pair = unsafe { Pair::new(&mut home, n) };
+    pair.furnish(|_| other.spare_capacity_mut());
     let top = grow(level, pair, bounds, &middles);
     // SAFETY: sorted cells are cells.
     cells.iter_mut().zip(&home).for_each(|(cell, sorted)| *cell = unsafe { sorted.assume_init() });
@@ -198,11 +193,13 @@ pub(super) fn sort(
             );
         }
     }
-    references.par_chunks(chunk).zip(rooms).for_each(|(chunk, mut rooms)| {
-        for reference in chunk {
-            let room = &mut rooms[leaf_of[grid.cell(reference)] as usize];
-            room.next().expect("as much room as was counted").write(*reference);
-        }
+    chunks.into_par_iter().zip(rooms).for_each(|(chunk, mut rooms)| {
+        for_blocks(references, chunk, |_, block| {
+            for reference in block {
+                let room = &mut rooms[leaf_of[grid.cell(reference)] as usize];
+                room.next().expect("as much room as was counted").write(*reference);
+            }
+        });
     });
     Some(Box::new(top))
 }

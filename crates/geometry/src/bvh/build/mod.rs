@@ -7,17 +7,22 @@ mod pair;
 mod presplit;
 mod range;
 mod reference;
+mod room;
+mod source;
 mod spatial;
 
 pub(super) use hull::Hull;
 pub(super) use pair::initialised;
-pub(crate) use presplit::presplit;
 pub(crate) use reference::{Reference, Target, padded};
+pub(crate) use source::References;
 
 use super::{node::WIDTH, traverse::Level, with_capacity};
 use pair::Pair;
-use range::{Context, Range};
+use presplit::{Cuts, presplit};
+use range::{Context, GRID, Range};
 use rayon::prelude::*;
+use room::{Pool, Room};
+use source::{Summary, collect};
 use spatial::Positions;
 use std::mem::MaybeUninit;
 use tenfold_math::Bounds3;
@@ -97,21 +102,40 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Sorts the first `len` references of `home` and builds a tree over them; there must be at least one. Where there is more room, triangles may be cut, and leaves
-/// have gaps between them.
-///
-/// # Safety
-/// These references must be initialised.
-pub(super) unsafe fn build(
-    home: &mut [MaybeUninit<Reference>],
-    len: usize,
-    positions: &Positions<'_>,
-) -> (Bounds3, Tree) {
-    let mut other = with_capacity(home.len());
-    // SAFETY: by the caller's promise.
-    let references = unsafe { Pair::new(home, len, other.spare_capacity_mut()) };
-    let range = Range::all(Context { level: Level::detect(), positions }, references);
-    (range.bounds(), tree(range, 0))
+/// Sorts references and builds a tree over them; there must be at least one. The spare room of the array that is returned holds them: those
+/// that leaves name are initialised, between which there are gaps where triangles were cut.
+pub(super) fn build(source: &impl References, positions: &Positions<'_>) -> (Vec<Reference>, Bounds3, Tree) {
+    let level = Level::detect();
+    let mut summary = Summary::of(source);
+    let cuts = presplit(source, &summary, positions);
+    let mut len = source.len();
+    let mut home = Vec::new();
+    let mut top = None;
+    if len > GRID && cuts.are_none() {
+        home = with_capacity(len);
+        top = grid::sort(level, source, &summary.middles, &mut home.spare_capacity_mut()[..len]);
+    }
+    let mut extra = 0;
+    if top.is_none() {
+        home = collect(source);
+        match cuts {
+            Cuts::Before(parts) if parts.is_empty() => {}
+            Cuts::Before(parts) => {
+                presplit::insert(parts, &mut home);
+                summary = Summary::of(&home[..]);
+                len = home.len();
+            }
+            Cuts::Meanwhile(more) => extra = more,
+        }
+        home.reserve_exact(extra);
+        home.clear();
+    }
+    let pool = Pool::default();
+    // SAFETY: these are what was collected, or sorted by the grid.
+    let references = unsafe { Pair::new(&mut home.spare_capacity_mut()[..len + extra], len) };
+    let range = Range::all(Context { level, positions, pool: &pool }, references, &summary, top);
+    let (bounds, tree) = (range.bounds(), tree(range, 0));
+    (home, bounds, tree)
 }
 
 /// A tree whose root is a node.
@@ -133,7 +157,9 @@ fn tree(range: Range<'_>, depth: usize) -> Tree {
         };
         (counts, (bounds, tree))
     };
-    let grown: Vec<_> = open(range, depth).into_par_iter().map(grow).collect();
+    let pool = range.pool();
+    let mut rooms = [(); WIDTH - 1].map(|()| pool.room());
+    let grown: Vec<_> = open(range, depth, &mut rooms).into_par_iter().map(grow).collect();
     let mut counts = Counts { nodes: 1, ..Counts::default() };
     grown.iter().for_each(|(below, _)| counts += *below);
     Tree::Node(Box::new(Inner { children: grown.into_iter().map(|(_, child)| child).collect(), counts }))
@@ -144,7 +170,9 @@ impl Bulk {
         self.counts.nodes += 1;
         let at = self.nodes.len();
         self.nodes.push([None; WIDTH]);
-        for (slot, mut child) in open(range, depth).into_iter().enumerate() {
+        let pool = range.pool();
+        let mut rooms = [(); WIDTH - 1].map(|()| pool.room());
+        for (slot, mut child) in open(range, depth, &mut rooms).into_iter().enumerate() {
             let word = if child.fits_leaf() {
                 let len = child.len() as u8;
                 Word::Leaf { first: child.finish(&mut self.counts) as u32, len }
@@ -158,14 +186,14 @@ impl Bulk {
 }
 
 /// Splits until there are eight ranges or all fit leaves; they stay in order.
-fn open(range: Range<'_>, depth: usize) -> Vec<Range<'_>> {
+fn open<'a>(range: Range<'a>, depth: usize, rooms: &'a mut [Room<'_>]) -> Vec<Range<'a>> {
     // Deep down only halving keeps within the depth.
     let halve = depth + levels(range.len()) + 1 >= MAX_DEPTH;
     let mut ranges = Vec::with_capacity(WIDTH);
     ranges.push(range);
-    while ranges.len() < WIDTH {
+    for room in rooms {
         let Some(next) = next_to_split(&ranges, halve) else { break };
-        let [low, high] = ranges.remove(next).split(halve);
+        let [low, high] = ranges.remove(next).split(halve, room);
         ranges.insert(next, high);
         ranges.insert(next, low);
     }

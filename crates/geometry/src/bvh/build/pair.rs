@@ -2,9 +2,9 @@
 
 use std::mem::MaybeUninit;
 
-/// Items in a buffer that may be larger, and another of the same size: splitting them moves them there.
+/// Items in a buffer that may be larger, and another of the same size: splitting them moves them there. It may be missing as long as nothing is split.
 pub(super) struct Pair<'a, T> {
-    /// Where the items are, and the other.
+    /// Where the items are, and the other: empty where it is missing.
     sides: [&'a mut [MaybeUninit<T>]; 2],
     /// Which part of the first holds items: initialised, always.
     start: usize,
@@ -14,18 +14,21 @@ pub(super) struct Pair<'a, T> {
 }
 
 impl<'a, T: Copy> Pair<'a, T> {
-    /// The first `len` items of `home`.
+    /// The first `len` items of `home`, without another buffer.
     ///
     /// # Safety
     /// They must be initialised.
-    pub(super) unsafe fn new(
-        home: &'a mut [MaybeUninit<T>],
-        len: usize,
-        room: &'a mut [MaybeUninit<T>],
-    ) -> Self {
+    pub(super) unsafe fn new(home: &'a mut [MaybeUninit<T>], len: usize) -> Self {
         assert!(len <= home.len());
-        let room = &mut room[..home.len()];
-        Self { sides: [home, room], start: 0, len, is_home: true }
+        Self { sides: [home, &mut []], start: 0, len, is_home: true }
+    }
+
+    /// Takes the other buffer where it is missing: as much room as is said.
+    pub(super) fn furnish(&mut self, room: impl FnOnce(usize) -> &'a mut [MaybeUninit<T>]) {
+        let n = self.capacity();
+        if self.sides[1].len() < n {
+            self.sides[1] = &mut room(n)[..n];
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -85,7 +88,7 @@ impl<'a, T: Copy> Pair<'a, T> {
         let Self { sides: [items, room], start, len, is_home } = self;
         assert!(k <= len);
         let (low, high) = items.split_at_mut(start + k);
-        let (low_room, high_room) = room.split_at_mut(start + k);
+        let (low_room, high_room) = room.split_at_mut(room.len().min(start + k));
         [
             Self { sides: [low, low_room], start, len: k, is_home },
             Self { sides: [high, high_room], start: 0, len: len - k, is_home },

@@ -1,7 +1,7 @@
 //! Cutting a few long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
 
-use super::hull::Hull;
 use super::reference::{Reference, Target, padded};
+use super::source::{References, Summary, for_blocks};
 use crate::bvh::node::LeafPrimitive;
 use rayon::prelude::*;
 use tenfold_math::{Bounds3, Vec3, ops};
@@ -21,7 +21,7 @@ const LARGE: f32 = 4.0;
 /// About so many triangles tell the mean priority.
 const SAMPLE: usize = 1 << 12;
 /// Triangles handled together by a thread.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 1 << 14;
 
 /// The octree whose planes cut.
 #[derive(Copy, Clone)]
@@ -72,52 +72,65 @@ fn cuts(priority: f32, scale: f32) -> usize {
     (priority * scale).min(MOST) as usize
 }
 
-/// Cuts triangles where few are long; their parts follow behind the references. Where many are, returns how many parts splits of space may add
-/// instead. The result does not depend on the number of threads.
-pub(crate) fn presplit(
-    references: &mut Vec<Reference>,
-    positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
-) -> usize {
+/// What is cut.
+pub(super) enum Cuts {
+    /// These triangles, into these parts: few are long.
+    Before(Vec<(u32, Reference)>),
+    /// Whatever splits of space want, into at most so many more parts: many are.
+    Meanwhile(usize),
+}
+
+impl Cuts {
+    pub(super) fn are_none(&self) -> bool {
+        matches!(self, Self::Before(parts) if parts.is_empty())
+    }
+}
+
+/// Finds what to cut. The result does not depend on the number of threads.
+pub(super) fn presplit(
+    references: &(impl References + ?Sized),
+    summary: &Summary,
+    positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync + ?Sized),
+) -> Cuts {
+    let n = references.len();
+    let one = |i: usize| references.read(i..i + 1, &mut Vec::with_capacity(1))[0];
     let corners = |r: &Reference| match r.target() {
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
     };
-    let around: Vec<(Hull, f64)> = references
-        .par_chunks(CHUNK)
-        .map(|chunk| {
-            chunk.iter().fold((Hull::EMPTY, 0.0), |(hull, area), r| {
-                (hull.union(r.hull()), area + f64::from(r.hull().half_area().sqrt()))
-            })
-        })
-        .collect();
-    // Sums in a fixed order.
-    let (hull, area) = around.iter().fold((Hull::EMPTY, 0.0), |a, b| (a.0.union(&b.0), a.1 + b.1));
-    let bounds = hull.bounds();
+    let bounds = summary.bounds.bounds();
     let octree = Octree { origin: bounds.min, size: bounds.diagonal().max_element() };
     // Meshes of alike triangles have no large ones: looking at all corners would take long.
-    let large = LARGE * ((area / references.len() as f64) as f32).powi(2);
-    let large: Vec<(u32, f32)> = references
-        .par_iter()
-        .enumerate()
-        .filter(|(_, r)| r.hull().half_area() > large)
-        .map(|(i, r)| (i as u32, corners(r).map_or(0.0, |p| octree.priority(p))))
+    let large = LARGE * ((summary.sizes / n as f64) as f32).powi(2);
+    let large: Vec<(u32, f32)> = (0..n.div_ceil(CHUNK))
+        .into_par_iter()
+        .flat_map_iter(|i| {
+            let mut found = Vec::new();
+            for_blocks(references, CHUNK * i..n.min(CHUNK * (i + 1)), |start, block| {
+                for (i, r) in block.iter().enumerate().filter(|(_, r)| r.hull().half_area() > large) {
+                    found.push(((start + i) as u32, corners(r).map_or(0.0, |p| octree.priority(p))));
+                }
+            });
+            found
+        })
         .collect();
-    let sample = references.iter().step_by(references.len().div_ceil(SAMPLE));
+    let sample = (0..n).step_by(n.div_ceil(SAMPLE));
     let (sum, count) = sample
-        .filter_map(corners)
+        .filter_map(|i| corners(&one(i)))
         .fold((0.0, 0), |(sum, count), p| (sum + f64::from(octree.priority(p)), count + 1));
     let mean = (sum / f64::from(count.max(1))) as f32;
     let scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
-    let share = |part: f32| (part * references.len() as f32) as usize;
+    let share = |part: f32| (part * n as f32) as usize;
     if large.iter().map(|&(_, priority)| cuts(priority, scale)).sum::<usize>() > share(MANY) {
-        return share(LATER);
+        return Cuts::Meanwhile(share(LATER));
     }
     // All parts of a chunk, with what they are parts of.
     let cut = |chunk: &[(u32, f32)]| {
         let mut parts = Vec::new();
         for &(index, priority) in chunk {
-            let reference = &references[index as usize];
-            if let (Some(corners), cuts @ 1..) = (corners(reference), cuts(priority, scale)) {
+            let cuts @ 1.. = cuts(priority, scale) else { continue };
+            let reference = one(index as usize);
+            if let Some(corners) = corners(&reference) {
                 let size = Bounds3::around(corners).diagonal().max_element();
                 octree.cut(&corners, cuts, &mut |b| {
                     parts.push((index, reference.with_bounds(padded(b, size))))
@@ -126,18 +139,19 @@ pub(crate) fn presplit(
         }
         parts
     };
-    let parts: Vec<Vec<(u32, Reference)>> = large.par_chunks(CHUNK).map(cut).collect();
-    drop(large);
-    references.reserve_exact(parts.iter().map(Vec::len).sum::<usize>());
+    Cuts::Before(large.par_chunks(CHUNK).flat_map_iter(cut).collect())
+}
+
+/// Puts parts in the places of what they are parts of: the first of them there, the others behind everything.
+pub(super) fn insert(parts: Vec<(u32, Reference)>, references: &mut Vec<Reference>) {
+    references.reserve_exact(parts.len());
     let mut last = None;
-    for (index, part) in parts.into_iter().flatten() {
-        // The first of them takes the place of the whole.
+    for (index, part) in parts {
         match last.replace(index) == Some(index) {
             true => references.push(part),
             false => references[index as usize] = part,
         }
     }
-    0
 }
 
 impl Octree {

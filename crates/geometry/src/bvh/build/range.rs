@@ -7,13 +7,15 @@ use super::{
     hull::Hull,
     pair::Pair,
     reference::{Reference, Target},
+    room::{Pool, Room},
+    source::Summary,
     spatial::{self, Positions},
 };
 use crate::bvh::{node::LANES, traverse::Level};
 use tenfold_math::Bounds3;
 
 /// More references are sorted by a grid first, where none are to be cut.
-const GRID: usize = 1 << 16;
+pub(super) const GRID: usize = 1 << 16;
 /// Splits of space are looked for where halves overlap by this share of the area around both.
 const OVERLAP: f32 = 0.3;
 
@@ -27,6 +29,7 @@ fn need(references: &[Reference]) -> f32 {
 pub(super) struct Context<'a> {
     pub(super) level: Level,
     pub(super) positions: &'a Positions<'a>,
+    pub(super) pool: &'a Pool,
 }
 
 /// Some references and what is around them.
@@ -43,10 +46,15 @@ pub(super) struct Range<'a> {
 }
 
 impl<'a> Range<'a> {
-    /// All references, with a buffer of the same size.
-    pub(super) fn all(context: Context<'a>, references: Pair<'a, Reference>) -> Self {
-        let [bounds, middles] = grid::around_all(context.level, references.items());
-        Self { context, references, first: 0, bounds, middles: Some(middles), top: None }
+    /// All references, sorted by a grid to its leaves or not at all.
+    pub(super) fn all(
+        context: Context<'a>,
+        references: Pair<'a, Reference>,
+        summary: &Summary,
+        top: Option<Box<Top>>,
+    ) -> Self {
+        let Summary { bounds, middles, .. } = *summary;
+        Self { context, references, first: 0, bounds, middles: Some(middles), top }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -55,6 +63,10 @@ impl<'a> Range<'a> {
 
     pub(super) fn bounds(&self) -> Bounds3 {
         self.bounds.bounds()
+    }
+
+    pub(super) fn pool(&self) -> &'a Pool {
+        self.context.pool
     }
 
     pub(super) fn half_area(&self) -> f32 {
@@ -76,14 +88,15 @@ impl<'a> Range<'a> {
         self.first + self.references.finish()
     }
 
-    /// Splits by the heuristic; in the middle where that finds no plane, or where it must (`halve`).
-    pub(super) fn split(mut self, halve: bool) -> [Self; 2] {
+    /// Splits by the heuristic; in the middle where that finds no plane, or where it must (`halve`). May take `room` to sort in.
+    pub(super) fn split(mut self, halve: bool, room: &'a mut Room<'_>) -> [Self; 2] {
         if halve {
             return self.halve();
         }
         if let Some(halves) = self.top.take().and_then(|top| top.halves) {
             return self.split_top(halves);
         }
+        self.references.furnish(|n| room.take(n));
         let level = self.context.level;
         let middles = self.middles.unwrap_or_else(|| around(level, self.references.items())[1]);
         if self.len() > GRID && self.references.slack() == 0 {
