@@ -24,7 +24,7 @@ pub use motion::{Key, Motion, Trs};
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere};
 pub use prefetch::prefetch;
 pub use ray::{Ray, offset_ray_origin};
-pub use scalar::{find_interval, gamma, lerp, next_up, sqr};
+pub use scalar::{find_interval, gamma, higher, lerp, lower, next_up, sqr};
 pub use spherical::{
     angle_between, direction_to_spherical, spherical_direction, spherical_quad_area, spherical_triangle_area,
 };

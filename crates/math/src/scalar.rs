@@ -4,6 +4,18 @@ pub fn sqr(x: f32) -> f32 {
     x * x
 }
 
+/// The smaller one, and `b` where either is NaN: an instruction that vectors have, too, which `f32::min` is not.
+#[inline(always)]
+pub fn lower(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger one, and `b` where either is NaN: see [`lower`].
+#[inline(always)]
+pub fn higher(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// `a` at `t = 0`, `b` at `t = 1`, exactly at both ends.
 #[inline]
 pub fn lerp(t: f32, a: f32, b: f32) -> f32 {

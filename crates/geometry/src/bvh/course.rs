@@ -1,7 +1,7 @@
 //! What the tests of boxes and triangles want to know of rays.
 
 use crate::shape::{RayShear, fastest_axis, permuted};
-use tenfold_math::{Ray, Rays, Vec3, Vec3s, WIDTH, vectorized};
+use tenfold_math::{Ray, Rays, Vec3, Vec3s, WIDTH, higher, vectorized};
 
 /// A ray on its way through a hierarchy.
 pub(crate) trait Course {
@@ -36,8 +36,7 @@ impl Course for Ray {
 /// The inverse of a direction for boxes: a ray along a slab gets a tiny slope instead of an infinite inverse, whose product with 0 would be NaN.
 #[inline(always)]
 fn inverse(d: Vec3) -> Vec3 {
-    let larger = |a: f32, b: f32| if a > b { a } else { b };
-    let tiny = 1e-18 * larger(d.x.abs(), larger(d.y.abs(), d.z.abs()));
+    let tiny = 1e-18 * higher(d.x.abs(), higher(d.y.abs(), d.z.abs()));
     let inverse = |d: f32| 1.0 / if d.abs() < tiny { tiny.copysign(d) } else { d };
     Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z))
 }
@@ -54,7 +53,7 @@ pub struct RayCourses {
     pub(crate) axis: [u32; WIDTH],
     /// Their origins by axes permuted so that this one is the last.
     pub(crate) origin: Vec3s,
-    /// Room for vertices in the spaces of these rays.
+    /// Room for vertices in the spaces of these rays, so that it needs not be cleared for every wave: [`World`](crate::World)s of few primitives use it.
     pub(crate) vertices: [Vec3s; MOST_VERTICES],
 }
 

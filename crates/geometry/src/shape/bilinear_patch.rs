@@ -6,7 +6,7 @@ use crate::{
 };
 use glam::{DVec3, Vec3A};
 use std::ops::{Add, Mul};
-use tenfold_math::{Bounds3, Quat, Ray, Slots, Vec2, Vec3, WIDTH, gamma, vectorized};
+use tenfold_math::{Bounds3, Quat, Ray, Slots, Vec2, Vec3, WIDTH, gamma, higher, vectorized};
 use tenfold_sampling::warp::{bilinear_pdf, sample_bilinear};
 
 /// A bilinear patch of a mesh: `p(u, v)` interpolates four corners, given in the order 00, 10, 01, 11.
@@ -359,7 +359,6 @@ fn largest(corners: &[Vec3; 4]) -> f32 {
 fn hit_at([t, u, v]: [f64; 3], largest: f32, ray: &Ray, t_max: f32) -> (ShapeHit, bool) {
     let inside = |x: f64| (-SLACK..=1.0 + SLACK).contains(&x);
     // Nearer than rounding can tell from the origin's own surface.
-    let higher = |a: f32, b: f32| if a > b { a } else { b };
     let origin = ray.origin.abs();
     let size = higher(higher(origin.x, origin.y), higher(origin.z, largest));
     let t_min = 1e-13 * f64::from(size) / ray.direction.as_dvec3().length_squared().sqrt();

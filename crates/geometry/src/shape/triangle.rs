@@ -4,7 +4,7 @@ use crate::{
     mesh::is_degenerate,
     sample::{corner_weights, pdf_by_solid_angle},
 };
-use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma};
+use tenfold_math::{Bounds3, Frame, Ray, Vec2, Vec3, gamma, higher, lower};
 use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
 
 /// Solid angles outside this range are sampled by area: directions to smaller triangles lose their digits, and
@@ -453,18 +453,6 @@ pub(crate) fn permuted(v: Vec3, axis: u32) -> Vec3 {
 #[inline(always)]
 fn opposite_edges(v: [Vec3; 3], edge: impl Fn(Vec3, Vec3) -> f32) -> [f32; 3] {
     [edge(v[1], v[2]), edge(v[2], v[0]), edge(v[0], v[1])]
-}
-
-/// As the instruction of x86 has it, which `f32::min` is not for NaN.
-#[inline(always)]
-fn lower(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// See [`lower`].
-#[inline(always)]
-fn higher(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Whether `t`, the mean of the vertices' ray parameters `z` weighted by the edge functions, is safely above 0.

@@ -7,7 +7,7 @@ use crate::{
     mesh::is_degenerate,
     shape::{Ball, Parallelogram, RayShear, ShearedTriangle, permuted, sheared_vertex},
 };
-use tenfold_math::{Bounds3, Floats, Id, Rays, Slots, Vec3, Vec3s, WIDTH, vectorized};
+use tenfold_math::{Bounds3, Floats, Id, Rays, Slots, Vec3, Vec3s, WIDTH, higher, lower, vectorized};
 
 /// Worlds of more primitives are faster by their hierarchy.
 const MOST: usize = 64;
@@ -50,7 +50,9 @@ impl Triangles {
     fn add(&mut self, corners: [Vec3; 3]) -> bool {
         let before = self.vertices.len();
         let places = corners.map(|p| {
-            let known = self.vertices.iter().position(|v| *v == p);
+            // Not `==`, for which 0 and −0 are the same.
+            let bits = |p: Vec3| p.to_array().map(f32::to_bits);
+            let known = self.vertices.iter().position(|v| bits(*v) == bits(p));
             known.unwrap_or_else(|| {
                 self.vertices.push(p);
                 self.vertices.len() - 1
@@ -254,13 +256,13 @@ vectorized! {
                 Kind::Ball(ball) => {
                     for i in 0..WIDTH {
                         let (hit, is_hit) = ball.hit(&rays.get(i), found.t_max[i]);
-                        found.take(i, hit, run.first, is_hit);
+                        found.take(i, hit, run.first, entered[i] & is_hit);
                     }
                 }
                 Kind::Parallelogram(parallelogram) => {
                     for i in 0..WIDTH {
                         let (hit, is_hit) = parallelogram.hit(&rays.get(i), found.t_max[i]);
-                        found.take(i, hit, run.first, is_hit);
+                        found.take(i, hit, run.first, entered[i] & is_hit);
                     }
                 }
                 Kind::Other => few.hit_one_by_one(run.first, geometries, &entered, rays, found),
@@ -282,8 +284,6 @@ vectorized! {
 /// Whether a ray enters a box before `t_max`, with room for rounding as in the hierarchy.
 #[inline(always)]
 fn enters(bounds: &Bounds3, origin: Vec3, inverse: Vec3, t_max: f32) -> bool {
-    let lower = |a: f32, b: f32| if a < b { a } else { b };
-    let higher = |a: f32, b: f32| if a > b { a } else { b };
     let (a, b) = ((bounds.min - origin) * inverse, (bounds.max - origin) * inverse);
     let near = higher(lower(a.x, b.x), higher(lower(a.y, b.y), higher(lower(a.z, b.z), 0.0)));
     let far = lower(higher(a.x, b.x), lower(higher(a.y, b.y), higher(a.z, b.z)));
@@ -338,5 +338,29 @@ fn hit_flat(
         if let Some(hit) = ray.intersect(*corners, found.t_max[slot]) {
             found.take(slot, hit, place, true);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Shape, Sphere, SphereParams};
+    use tenfold_math::Transform;
+
+    #[test]
+    fn few_primitives_that_every_ray_may_hit_make_a_list() {
+        let ball = Geometry {
+            shape: Shape::Sphere(Sphere::new(Transform::IDENTITY, false, SphereParams::whole(1.0)).unwrap()),
+            motion: None,
+            group: None,
+            user: 0,
+            masked: false,
+        };
+        let is_list = |geometries: &[Geometry]| Few::of(geometries).is_some();
+        let balls = vec![ball.clone(); MOST + 1];
+        assert!(is_list(&[]) && is_list(&balls[..1]) && is_list(&balls[..MOST]));
+        assert!(!is_list(&balls));
+        let masked = Geometry { masked: true, ..ball.clone() };
+        assert!(!is_list(&[ball, masked]));
     }
 }

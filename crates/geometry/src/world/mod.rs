@@ -115,7 +115,7 @@ impl World {
         Ok(Self { geometries: desc.geometries, hierarchies, few, interleaved, level, bounds, stats })
     }
 
-    /// The same world without vector instructions: it answers with the same bits.
+    /// The same world without vector instructions in its hierarchies: it answers with the same bits.
     #[must_use]
     pub fn portable(mut self) -> Self {
         self.level = Level::Portable;

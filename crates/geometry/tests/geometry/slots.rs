@@ -3,7 +3,7 @@
 use super::common::*;
 use std::sync::Arc;
 use tenfold_geometry::*;
-use tenfold_math::{Ray, Rays, Slots, Transform, Vec3, WIDTH};
+use tenfold_math::{Id, Ray, Rays, Slots, Transform, Vec3, WIDTH};
 use tenfold_testkit::Rng;
 
 /// A point of a grid: on such, rays run within planes and through edges and corners.
@@ -18,7 +18,7 @@ fn few_shapes(rng: &mut Rng) -> WorldDesc {
         let place = random_similarity(rng, 2.0);
         let partial = rng.below(3) == 0;
         let count = 1 + rng.below(12);
-        let shape = match rng.below(7) {
+        let shape = match rng.below(8) {
             0 | 1 => sphere(rng, place, partial),
             2 => triangles(rng, place, count, 0.6),
             3 => {
@@ -34,12 +34,24 @@ fn few_shapes(rng: &mut Rng) -> WorldDesc {
                 Shape::Patches(Arc::new(BilinearMesh::new(parts, &Transform::IDENTITY, false).unwrap()))
             }
             5 => patches(rng, place, 2, 0.6),
+            // Closed, of corners that many triangles share.
+            6 => {
+                let parts = closed_mesh(rng, 3, 4, 0.5);
+                Shape::Triangles(Arc::new(TriangleMesh::new(parts, &place, false).unwrap()))
+            }
             _ => {
                 let place = random_transform(rng, 2.0);
                 random_shape(rng, place)
             }
         };
         desc.geometries.push(still(shape, user));
+    }
+    // Some are no world that every ray can be tested against alike.
+    let geometry = &mut desc.geometries[0];
+    match rng.below(8) {
+        0 => geometry.masked = true,
+        1 => geometry.motion = Some(random_motion(rng, 1.0)),
+        _ => {}
     }
     desc
 }
@@ -59,21 +71,30 @@ fn compare(world: &World, rng: &mut Rng) -> [usize; 2] {
     let mut rays = Rays::default();
     (0..WIDTH).for_each(|slot| rays.set(slot, any_ray(rng)));
     let slots = Slots::first(WIDTH).keep(|_| rng.below(4) != 0);
-    let t_max = std::array::from_fn(|_| match rng.below(8) {
+    let t_max = std::array::from_fn(|_| match rng.below(16) {
         0 => 0.0,
-        1 => f32::INFINITY,
-        2 => 1.0,
+        1 => f32::NAN,
+        2 => -1.0,
+        3 | 4 => f32::INFINITY,
+        5 | 6 => 1.0,
         _ => in_range(rng, 0.1, 6.0),
     });
     let mut courses = RayCourses::default();
-    let mut hits = [None; WIDTH];
+    let unlike_any = Hit {
+        t: -1.0,
+        u: 0.0,
+        v: 0.0,
+        primitive: PrimitiveId { geometry: Id::new(0), index: 77 },
+        instance: InstanceId::NONE,
+    };
+    let mut hits = [Some(unlike_any); WIDTH];
     // Every third is let through where it is asked for.
     let stops = |slot: usize, _: &Candidate<'_>| !slot.is_multiple_of(3);
     world.intersect_slots(slots, &rays, &mut courses, stops, &mut hits);
     let occluded = world.occluded_slots(slots, &rays, &mut courses, &t_max, stops);
     for slot in 0..WIDTH {
         if !slots.contains(slot) {
-            assert!(hits[slot].is_none() && !occluded.contains(slot));
+            assert!(hits[slot].take() == Some(unlike_any) && !occluded.contains(slot));
             continue;
         }
         let ray = rays.get(slot);

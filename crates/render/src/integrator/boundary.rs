@@ -22,7 +22,8 @@ vectorized! {
 }
 
 vectorized! {
-    /// Rays that leave the surfaces `from`, in the slots that are `here`, in directions chosen by `u_lobe` and `u`.
+    /// Rays that leave the surfaces `from`, in the slots that are `here`, in directions chosen by `u_lobe` and `u`. What passes has `eta_scale` multiplied by the
+    /// square of the relative index.
     pub(super) fn scatter(
         here: &[bool; WIDTH],
         surfaces: &Surfaces,

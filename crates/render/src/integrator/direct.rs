@@ -47,6 +47,9 @@ impl<'a> PathTracer<'a> {
         }
         weigh_sampled(combine, &wave.weights, scattering, light, &parts, arriving);
         let lit = lit.keep(|slot| !arriving.get(slot).is_black());
+        if lit.is_empty() {
+            return;
+        }
         rays.shadow += lit.len() as u64;
         let stops = |slot: usize, c: &Candidate<'_>| {
             // Light passes from one medium into the next.

@@ -28,8 +28,8 @@ vectorized! {
             from.ns.set_where(mask, i, if n.dot(w) < 0.0 { -n } else { n });
             from.time[i] = select(mask, time[i], from.time[i]);
             wo.set_where(mask, i, w);
-            surfaces.n.set(i, n);
-            surfaces.tangent.set(i, met.dpdu.get(i));
+            surfaces.n.set_where(mask, i, n);
+            surfaces.tangent.set_where(mask, i, met.dpdu.get(i));
             let reflectance = surfaces.reflectance.array(i).map(fraction);
             surfaces.reflectance.set_array(i, reflectance);
             let [a, b, c, d] = reflectance;

@@ -58,7 +58,7 @@ impl<'a> PathTracer<'a> {
         let at_stake = scattered.keep(|slot| chances[slot] > 0.0 && chances[slot] < 1.0);
         let u = wave.numbers_1d(group, at_stake, Dimension::roulette);
         at_stake.for_each(|slot| wave.weights.strengthen(slot, chances[slot]));
-        scattered.keep(|slot| chances[slot] > u[slot])
+        scattered.keep(|slot| survives(chances[slot], || u[slot]))
     }
 
     /// Sends every lane of a settled path its own way. Lanes that are reflected stay together: reflection does not
@@ -79,7 +79,7 @@ impl<'a> PathTracer<'a> {
             let path = Path { lanes, bounce: path.bounce + 1, specular };
             weights.eta_scale *= s.eta * s.eta;
             let chance = survival(&path, weights.carried(&lanes), sample);
-            if chance == 1.0 || sample.sampler.get_1d(Dimension::roulette(path.bounce)) < chance {
+            if survives(chance, || sample.sampler.get_1d(Dimension::roulette(path.bounce))) {
                 weights.beta /= chance;
                 pending.push(Waiting { slot, path, weights, ray: from.spawn_ray(s.wi), from: *from });
             }
@@ -133,4 +133,10 @@ fn survival(path: &Path, carried: f32, sample: &Sample<'_>) -> f32 {
         return 1.0;
     }
     (carried / SAFE).max(0.05)
+}
+
+/// Whether a path goes on whose chance that is; those that go on in any case need no number.
+#[inline]
+fn survives(chance: f32, u: impl FnOnce() -> f32) -> bool {
+    chance == 1.0 || u() < chance
 }

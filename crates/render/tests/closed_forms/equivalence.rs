@@ -1,11 +1,12 @@
 //! One picture, bit for bit, however its work is divided.
 
 use super::combined::everything;
-use super::common::film;
+use super::common::{film, scene};
 use std::num::NonZeroUsize;
 use tenfold_math::UVec2;
 use tenfold_render::film::{Film, PixelBounds};
 use tenfold_render::integrator::Workspace;
+use tenfold_render::scene::Scene;
 use tenfold_render::schedule::{PixelEstimator, RenderSettings, TileOrder};
 use tenfold_sampling::{SampleRoom, Sampler};
 
@@ -57,9 +58,14 @@ fn parts_make_up_the_whole() {
 /// Whichever samples are traced together, each is what it is alone.
 #[test]
 fn company_does_not_matter() {
-    let scene = everything();
-    let settings = RenderSettings { spp: SPP, ..RenderSettings::of(&scene) };
-    let estimator = PixelEstimator::new(&scene, &settings);
+    // With a hierarchy, and with so few primitives that there is none.
+    let scenes = [everything(), scene(include_str!("few.pbrt"))];
+    scenes.iter().for_each(all_samples_are_what_they_are_alone);
+}
+
+fn all_samples_are_what_they_are_alone(scene: &Scene) {
+    let settings = RenderSettings { spp: SPP, ..RenderSettings::of(scene) };
+    let estimator = PixelEstimator::new(scene, &settings);
     let sampler = Sampler::new(settings.sampling, SPP, 3);
     let (mut room, mut workspace) = (SampleRoom::default(), Workspace::default());
     for pixel in scene.film.bounds.pixels().step_by(7) {
