@@ -124,9 +124,7 @@ impl Material {
             Self::Mix(_) | Self::Interface => return None,
         })
     }
-}
 
-impl Material {
     /// Whether anything of it varies over a surface.
     fn is_textured(&self) -> bool {
         match self {

@@ -2,6 +2,7 @@
 
 use super::*;
 use tenfold_math::{Vec3, vec2};
+use tenfold_testkit::Rng;
 
 fn ramp(textures: &mut Textures) -> FloatSlot {
     // The value is u.
@@ -85,5 +86,38 @@ fn a_texture_without_weight_is_not_looked_at() {
         t.add_float(FloatTexture::Mix(Mix { textures: [infinite, zero], amount: FloatSlot::Constant(1.0) }));
     for id in [scale, mix] {
         assert_eq!(t.float(&FloatSlot::Texture(id), &TextureContext::default()), 0.0);
+    }
+}
+
+/// Where a spectrum is settled, it is what the texture has there; and not only where it is the same everywhere.
+#[test]
+fn settled_spectra_are_those_of_the_texture() {
+    let mut textures = Textures::default();
+    let constant = |v: f32| SpectrumSlot::Constant(Spectrum::Constant(v));
+    let board = || Board::Squares(Mapping2::default());
+    let checks = Checkerboard { board: board(), textures: [constant(0.2), constant(0.7)] };
+    let checks = textures.add_spectrum(SpectrumTexture::Checkerboard(checks));
+    let checks = SpectrumSlot::Texture(checks);
+    let nested = Checkerboard { board: board(), textures: [checks.clone(), constant(0.9)] };
+    let nested = SpectrumSlot::Texture(textures.add_spectrum(SpectrumTexture::Checkerboard(nested)));
+    let dots = Dots { mapping: Mapping2::default(), inside: constant(0.1), outside: checks.clone() };
+    let dots = SpectrumSlot::Texture(textures.add_spectrum(SpectrumTexture::Dots(dots)));
+    let w = SampledWavelengths::sample_visible(0.3);
+    let mut rng = Rng::new(5);
+    for (slot, least, most) in
+        [(&constant(0.4), 1000, 1000), (&checks, 700, 950), (&nested, 300, 550), (&dots, 10, 600)]
+    {
+        let mut settled = 0;
+        for _ in 0..1000 {
+            // Some see a border.
+            let width = if rng.below(4) == 0 { 0.3 } else { 0.0 };
+            let footprint = Footprint { dudx: width, dvdy: width, ..Footprint::default() };
+            let at = TextureContext { footprint, ..TextureContext::at_uv(rng.vec2() * 8.0) };
+            if let Some(spectrum) = textures.settle(slot, &at) {
+                assert_eq!(spectrum.sample(&w), textures.spectrum(slot, &at, &w));
+                settled += 1;
+            }
+        }
+        assert!((least..=most).contains(&settled), "{slot:?}: {settled}");
     }
 }
