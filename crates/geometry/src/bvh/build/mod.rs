@@ -16,13 +16,13 @@ pub(super) use pair::initialised;
 pub(crate) use reference::{Reference, Target, padded};
 pub(crate) use source::References;
 
-use super::{node::WIDTH, traverse::Level, with_capacity};
+use super::{node::WIDTH, traverse::Level};
 use pair::Pair;
 use presplit::{Cuts, presplit};
 use range::{Context, GRID, Range};
 use rayon::prelude::*;
 use room::{Pool, Room};
-use source::{Summary, collect};
+use source::{Cut, Summary, collect};
 use spatial::Positions;
 use std::mem::MaybeUninit;
 use tenfold_math::Bounds3;
@@ -105,35 +105,40 @@ impl std::ops::AddAssign for Counts {
 /// Sorts references and builds a tree over them; there must be at least one. The spare room of the array that is returned holds them: those
 /// that leaves name are initialised, between which there are gaps where triangles were cut.
 pub(super) fn build(source: &impl References, positions: &Positions<'_>) -> (Vec<Reference>, Bounds3, Tree) {
-    let level = Level::detect();
-    let mut summary = Summary::of(source);
-    let cuts = presplit(source, &summary, positions);
-    let mut len = source.len();
+    let summary = Summary::of(source);
+    match presplit(source, &summary, positions) {
+        Cuts::Before(parts) if parts.is_empty() => grow(source, &summary, 0, positions),
+        Cuts::Before(parts) => {
+            let cut = Cut::new(source, parts);
+            grow(&cut, &Summary::of(&cut), 0, positions)
+        }
+        Cuts::Meanwhile(extra) => grow(source, &summary, extra, positions),
+    }
+}
+
+/// As [`build`]; splits of space may add `extra` references.
+fn grow(
+    source: &impl References,
+    summary: &Summary,
+    extra: usize,
+    positions: &Positions<'_>,
+) -> (Vec<Reference>, Bounds3, Tree) {
+    let (level, len) = (Level::detect(), source.len());
     let mut home = Vec::new();
     let mut top = None;
-    if len > GRID && cuts.are_none() {
-        home = with_capacity(len);
+    if len > GRID && extra == 0 {
+        // In small pages, which those that held a file and were freed serve for: it is read and written in order.
+        home = Vec::with_capacity(len);
         top = grid::sort(level, source, &summary.middles, &mut home.spare_capacity_mut()[..len]);
     }
-    let mut extra = 0;
     if top.is_none() {
-        home = collect(source);
-        match cuts {
-            Cuts::Before(parts) if parts.is_empty() => {}
-            Cuts::Before(parts) => {
-                presplit::insert(parts, &mut home);
-                summary = Summary::of(&home[..]);
-                len = home.len();
-            }
-            Cuts::Meanwhile(more) => extra = more,
-        }
-        home.reserve_exact(extra);
+        home = collect(source, extra);
         home.clear();
     }
     let pool = Pool::default();
-    // SAFETY: these are what was collected, or sorted by the grid.
+    // SAFETY: the grid has sorted as many, or they were collected.
     let references = unsafe { Pair::new(&mut home.spare_capacity_mut()[..len + extra], len) };
-    let range = Range::all(Context { level, positions, pool: &pool }, references, &summary, top);
+    let range = Range::all(Context { level, positions, pool: &pool }, references, summary, top);
     let (bounds, tree) = (range.bounds(), tree(range, 0));
     (home, bounds, tree)
 }

@@ -74,16 +74,10 @@ fn cuts(priority: f32, scale: f32) -> usize {
 
 /// What is cut.
 pub(super) enum Cuts {
-    /// These triangles, into these parts: few are long.
+    /// The triangles of these numbers, in order, into these parts: few are long.
     Before(Vec<(u32, Reference)>),
     /// Whatever splits of space want, into at most so many more parts: many are.
     Meanwhile(usize),
-}
-
-impl Cuts {
-    pub(super) fn are_none(&self) -> bool {
-        matches!(self, Self::Before(parts) if parts.is_empty())
-    }
 }
 
 /// Finds what to cut. The result does not depend on the number of threads.
@@ -93,7 +87,11 @@ pub(super) fn presplit(
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync + ?Sized),
 ) -> Cuts {
     let n = references.len();
-    let one = |i: usize| references.read(i..i + 1, &mut Vec::with_capacity(1))[0];
+    let one = |i: usize| {
+        let mut one = Vec::with_capacity(1);
+        references.read(i..i + 1, &mut one);
+        one[0]
+    };
     let corners = |r: &Reference| match r.target() {
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
@@ -140,18 +138,6 @@ pub(super) fn presplit(
         parts
     };
     Cuts::Before(large.par_chunks(CHUNK).flat_map_iter(cut).collect())
-}
-
-/// Puts parts in the places of what they are parts of: the first of them there, the others behind everything.
-pub(super) fn insert(parts: Vec<(u32, Reference)>, references: &mut Vec<Reference>) {
-    references.reserve_exact(parts.len());
-    let mut last = None;
-    for (index, part) in parts {
-        match last.replace(index) == Some(index) {
-            true => references.push(part),
-            false => references[index as usize] = part,
-        }
-    }
 }
 
 impl Octree {

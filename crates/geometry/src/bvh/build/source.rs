@@ -13,8 +13,8 @@ pub(crate) trait References: Sync {
     /// How many there are.
     fn len(&self) -> usize;
 
-    /// Some of them, made in `room` where they lie nowhere.
-    fn read<'a>(&'a self, range: Range<usize>, room: &'a mut Vec<Reference>) -> &'a [Reference];
+    /// Makes those of some numbers: the content of `room`.
+    fn read(&self, range: Range<usize>, room: &mut Vec<Reference>);
 }
 
 impl References for [Reference] {
@@ -22,21 +22,61 @@ impl References for [Reference] {
         self.len()
     }
 
-    fn read<'a>(&'a self, range: Range<usize>, _: &'a mut Vec<Reference>) -> &'a [Reference] {
-        &self[range]
+    fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
+        room.clear();
+        room.extend_from_slice(&self[range]);
     }
 }
 
-/// All of them.
-pub(super) fn collect(source: &(impl References + ?Sized)) -> Vec<Reference> {
+/// References some of which are cut.
+pub(super) struct Cut<'a, S> {
+    whole: &'a S,
+    /// The first parts of those that are cut, with their numbers, in order.
+    instead: Vec<(u32, Reference)>,
+    /// The other parts: behind all.
+    more: Vec<Reference>,
+}
+
+impl<'a, S: References> Cut<'a, S> {
+    /// With parts, in the order of what they are parts of.
+    pub(super) fn new(whole: &'a S, parts: Vec<(u32, Reference)>) -> Self {
+        let (mut instead, mut more): (Vec<(u32, Reference)>, _) = (Vec::new(), Vec::new());
+        for (number, part) in parts {
+            match instead.last().is_some_and(|(last, _)| *last == number) {
+                true => more.push(part),
+                false => instead.push((number, part)),
+            }
+        }
+        Self { whole, instead, more }
+    }
+}
+
+impl<S: References> References for Cut<'_, S> {
+    fn len(&self) -> usize {
+        self.whole.len() + self.more.len()
+    }
+
+    fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
+        let n = self.whole.len();
+        self.whole.read(range.start.min(n)..range.end.min(n), room);
+        let from = self.instead.partition_point(|(number, _)| (*number as usize) < range.start);
+        let cut = self.instead[from..].iter().map(|(number, part)| (*number as usize, part));
+        cut.take_while(|(number, _)| *number < range.end)
+            .for_each(|(number, part)| room[number - range.start] = *part);
+        room.extend_from_slice(&self.more[range.start.max(n) - n..range.end.max(n) - n]);
+    }
+}
+
+/// All of them, and room for more.
+pub(super) fn collect(source: &(impl References + ?Sized), extra: usize) -> Vec<Reference> {
     let n = source.len();
-    let mut all = with_capacity(n);
+    let mut all = with_capacity(n + extra);
     all.spare_capacity_mut()[..n].par_chunks_mut(BLOCK).enumerate().for_each_init(
         Vec::new,
         |room, (i, to)| {
-            let block = source.read(BLOCK * i..BLOCK * i + to.len(), room);
-            assert_eq!(block.len(), to.len());
-            to.iter_mut().zip(block).for_each(|(to, reference)| _ = to.write(*reference));
+            source.read(BLOCK * i..BLOCK * i + to.len(), room);
+            assert_eq!(room.len(), to.len());
+            to.iter_mut().zip(room).for_each(|(to, reference)| _ = to.write(*reference));
         },
     );
     // SAFETY: all were written, as many as asserted.
@@ -52,7 +92,8 @@ pub(super) fn for_blocks(
 ) {
     let mut room = Vec::new();
     for start in range.clone().step_by(BLOCK) {
-        f(start, source.read(start..range.end.min(start + BLOCK), &mut room));
+        source.read(start..range.end.min(start + BLOCK), &mut room);
+        f(start, &room);
     }
 }
 
@@ -74,9 +115,9 @@ impl Summary {
         let blocks: Vec<Self> = (0..source.len().div_ceil(BLOCK))
             .into_par_iter()
             .map_init(Vec::new, |room, i| {
-                let block = source.read(BLOCK * i..source.len().min(BLOCK * (i + 1)), room);
-                let [bounds, middles] = bins::around(level, block);
-                let sizes = block.iter().map(|r| f64::from(r.hull().half_area().sqrt())).sum();
+                source.read(BLOCK * i..source.len().min(BLOCK * (i + 1)), room);
+                let [bounds, middles] = bins::around(level, room);
+                let sizes = room.iter().map(|r| f64::from(r.hull().half_area().sqrt())).sum();
                 Self { bounds, middles, sizes }
             })
             .collect();
@@ -86,5 +127,45 @@ impl Summary {
             middles: a.middles.union(&b.middles),
             sizes: a.sizes + b.sizes,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{build::Target, node::LeafPrimitive};
+    use tenfold_math::{Bounds3, Vec3};
+
+    #[test]
+    fn parts_take_the_places_of_what_is_cut() {
+        let reference = |x: f32, i: u32| {
+            let target = Target::Triangle(LeafPrimitive::new(0, i, false));
+            Reference::new(Bounds3::around([Vec3::splat(x)]), target)
+        };
+        struct Whole(Vec<Reference>);
+        impl References for Whole {
+            fn len(&self) -> usize {
+                self.0.len()
+            }
+            fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
+                self.0[..].read(range, room);
+            }
+        }
+        let whole = Whole((0..10).map(|i| reference(i as f32, i)).collect());
+        let parts = [(2, 2.25), (2, 2.5), (2, 2.75), (3, 3.5), (9, 9.25), (9, 9.5)];
+        let cut = Cut::new(&whole, parts.map(|(i, x)| (i, reference(x, i))).to_vec());
+        let want = [0.0, 1.0, 2.25, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.25, 2.5, 2.75, 9.5];
+        assert_eq!(cut.len(), want.len());
+        let places = |references: &[Reference]| -> Vec<f32> {
+            references.iter().map(|r| r.hull().bounds().min.x).collect()
+        };
+        let mut room = Vec::new();
+        for start in 0..=want.len() {
+            for end in start..=want.len() {
+                cut.read(start..end, &mut room);
+                assert_eq!(places(&room), want[start..end]);
+            }
+        }
+        assert_eq!(places(&collect(&cut, 5)), want);
     }
 }
