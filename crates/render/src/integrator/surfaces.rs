@@ -2,7 +2,7 @@
 
 use crate::bxdf::{Interface, TrowbridgeReitz, WideBxdf};
 use tenfold_geometry::ReferencePoints;
-use tenfold_math::{Frame, Rays, Vec3, Vec3s, WIDTH, offset_ray_origin};
+use tenfold_math::{Frame, Rays, Vec3, Vec3s, WIDTH, offset_ray_origin, select};
 use tenfold_spectrum::Spectra;
 
 /// Surfaces whose scattering is computed side by side ([`WideBxdf`]): in each slot what its kind asks for.
@@ -67,9 +67,8 @@ impl Default for Surfaces {
 #[inline(always)]
 pub(super) fn leave_if(is_here: bool, slot: usize, from: &ReferencePoints, wi: Vec3, rays: &mut Rays) {
     let origin = offset_ray_origin(from.p.get(slot), from.p_error.get(slot), from.n.get(slot), wi);
-    let of = |new: f32, old: f32| if is_here { new } else { old };
-    let all = |new: Vec3, old: Vec3| Vec3::new(of(new.x, old.x), of(new.y, old.y), of(new.z, old.z));
-    rays.origin.set(slot, all(origin, rays.origin.get(slot)));
-    rays.direction.set(slot, all(wi, rays.direction.get(slot)));
-    rays.time[slot] = of(from.time[slot], rays.time[slot]);
+    let mask = u32::from(is_here).wrapping_neg();
+    rays.origin.set_where(mask, slot, origin);
+    rays.direction.set_where(mask, slot, wi);
+    rays.time[slot] = select(mask, from.time[slot], rays.time[slot]);
 }
