@@ -1,5 +1,6 @@
-//! Building: the tree grows top-down, straight to eight children. Long triangles are cut, before that where they are few, meanwhile where they are many.
+//! Building: the tree grows top-down, straight to eight children where it is large. Long triangles are cut, before that where they are few, meanwhile where they are many.
 
+mod binary;
 mod bins;
 mod grid;
 mod hull;
@@ -29,8 +30,11 @@ use tenfold_math::Bounds3;
 
 /// Subtrees of at most this many references are built by one thread.
 const ALONE: usize = 4096;
+/// Nodes on the way from the root to any subtree of these, and halvings from there, at most.
+const MOST_ABOVE: usize = 18;
+const MOST_HALVINGS: usize = 36;
 /// No path from the root is longer, in nodes: what the traversal's stack is made for.
-pub(super) const MAX_DEPTH: usize = 18;
+pub(super) const MAX_DEPTH: usize = MOST_ABOVE + MOST_HALVINGS;
 
 /// A tree over the sorted references before it is laid out.
 pub(super) enum Tree {
@@ -146,9 +150,7 @@ fn grow(
 /// A tree whose root is a node.
 fn tree(range: Range<'_>, depth: usize) -> Tree {
     if range.len() <= ALONE {
-        let mut bulk = Bulk::default();
-        bulk.grow(range, depth);
-        return Tree::Bulk(bulk);
+        return Tree::Bulk(binary::grow(range));
     }
     let grow = |mut range: Range<'_>| {
         let bounds = range.bounds();
@@ -170,30 +172,10 @@ fn tree(range: Range<'_>, depth: usize) -> Tree {
     Tree::Node(Box::new(Inner { children: grown.into_iter().map(|(_, child)| child).collect(), counts }))
 }
 
-impl Bulk {
-    fn grow(&mut self, range: Range<'_>, depth: usize) {
-        self.counts.nodes += 1;
-        let at = self.nodes.len();
-        self.nodes.push([None; WIDTH]);
-        let pool = range.pool();
-        let mut rooms = [(); WIDTH - 1].map(|()| pool.room());
-        for (slot, mut child) in open(range, depth, &mut rooms).into_iter().enumerate() {
-            let word = if child.fits_leaf() {
-                let len = child.len() as u8;
-                Word::Leaf { first: child.finish(&mut self.counts) as u32, len }
-            } else {
-                self.grow(child, depth + 1);
-                Word::Node
-            };
-            self.nodes[at][slot] = Some(word);
-        }
-    }
-}
-
 /// Splits until there are eight ranges or all fit leaves; they stay in order.
 fn open<'a>(range: Range<'a>, depth: usize, rooms: &'a mut [Room<'_>]) -> Vec<Range<'a>> {
     // Deep down only halving keeps within the depth.
-    let halve = depth + levels(range.len()) + 1 >= MAX_DEPTH;
+    let halve = depth + levels(range.len()) + 1 >= MOST_ABOVE;
     let mut ranges = Vec::with_capacity(WIDTH);
     ranges.push(range);
     for room in rooms {
