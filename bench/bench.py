@@ -12,7 +12,7 @@ from pathlib import Path
 
 import measure
 import meshes
-from peers import PEERS, Tenfold, Twin
+from peers import PEERS, AtOnce, Tenfold, Twin
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
@@ -100,11 +100,16 @@ def scale(args):
             for threads in (1, args.threads):
                 found = [o for o in openers(args, scene, threads) if o[0] == peer]
                 pair.append((f"{peer} {threads}", found[0][1]))
+            if peer == "tenfold":
+                pair.append(("at once", lambda: AtOnce(args.tenfold, scene, args.threads, args.spp)))
             series = measure.interleaved(pair, args.spp, args.runs)
-            if len(series) == 2:
-                ratios = [a / b for a, b in zip(series[0].seconds, series[1].seconds)]
+            if len(series) == len(pair):
+                def speed_up(times, work=1):
+                    return statistics.median(work * a / b for a, b in zip(series[0].seconds, times.seconds))
+
                 rows.append({"scene": name, "renderer": peer, "seconds, 1 thread": series[0].time,
-                             f"seconds, {args.threads} threads": series[1].time, "speed-up": statistics.median(ratios)})
+                             f"seconds, {args.threads} threads": series[1].time, "speed-up": speed_up(series[1]),
+                             "of as many programs": speed_up(series[2], args.threads) if peer == "tenfold" else None})
         table(rows)
     write(args, "scaling", rows, f"{args.spp} samples a pixel, medians of {args.runs} interleaved runs")
 

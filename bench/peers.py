@@ -2,10 +2,12 @@
 
 import json
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,6 +53,24 @@ class Tenfold:
         )
         self.load_seconds = self.read_seconds + self.compile_seconds
         return Render(picture, completed["seconds"], process_seconds)
+
+    def close(self):
+        pass
+
+
+class AtOnce:
+    """So many runs of the program at once, each with one thread. They share nothing but the machine: what they lose to each other, threads of one
+    program lose, too."""
+
+    name = "tenfold at once"
+
+    def __init__(self, program, scene, copies, samples):
+        self.copies = [Tenfold(program, scene, 1, samples) for _ in range(copies)]
+
+    def render(self, seed):
+        with ThreadPoolExecutor(len(self.copies)) as threads:
+            renders = list(threads.map(lambda copy: copy.render(seed), self.copies))
+        return Render(renders[0].picture, statistics.mean(render.seconds for render in renders))
 
     def close(self):
         pass
