@@ -23,12 +23,6 @@ impl Slots {
         Self(((1u32 << count) - 1) as u16)
     }
 
-    /// A bit for each slot, the lowest that of the first.
-    #[inline]
-    pub fn bits(self) -> u16 {
-        self.0
-    }
-
     /// Adds a slot.
     #[inline]
     pub fn insert(&mut self, slot: usize) {

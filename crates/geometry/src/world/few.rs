@@ -108,7 +108,8 @@ impl Few {
         primitive: &Primitive<'_>,
         triangles: &mut Option<usize>,
     ) {
-        let mut bounds = primitive.bounds();
+        let bounds = primitive.bounds();
+        let bounds = padded(bounds, bounds.diagonal().max_element());
         let first = self.names.len() as u32;
         let name = PrimitiveId { geometry: Id::new(geometry), index: index as u32 };
         let primitives = match primitive {
@@ -121,7 +122,7 @@ impl Few {
                     triangles.map(|i| &mut self.runs[i])
                     && run.add(corners)
                 {
-                    *all = all.union(padded(bounds, bounds.diagonal().max_element()));
+                    *all = all.union(bounds);
                     self.names.push(name);
                     return;
                 }
@@ -133,7 +134,6 @@ impl Few {
             Primitive::Patch(patch) => patch.parallelogram().map_or(Kind::Other, Kind::Parallelogram),
             _ => primitive.ball().map_or(Kind::Other, |ball| Kind::Ball(*ball)),
         };
-        bounds = padded(bounds, bounds.diagonal().max_element());
         self.names.push(name);
         self.runs.push(Run { bounds, first, primitives });
     }
@@ -222,9 +222,9 @@ vectorized! {
         any: bool,
         found: &mut Found,
     ) {
-        let bits = u32::from(slots.bits());
+        let flags = slots.flags();
         for i in 0..WIDTH {
-            let is_live = (bits >> i & 1 == 1) & leads_somewhere(&rays.get(i), t_max[i]);
+            let is_live = flags[i] & leads_somewhere(&rays.get(i), t_max[i]);
             found.t_max[i] = if is_live { t_max[i] } else { 0.0 };
         }
         let RayCourses { inverse, shear, axis, origin, vertices: turned } = courses;

@@ -12,7 +12,7 @@ use crate::{
 };
 use few::Few;
 use hierarchies::Hierarchies;
-use search::{Search, State};
+use search::Search;
 use std::array::from_fn;
 use tenfold_math::{Bounds3, Floats, Id, Motion, Ray, Rays, Slots, Transform, Vec2, Vec3, WIDTH};
 
@@ -229,17 +229,9 @@ impl World {
         if !leads_somewhere(ray, t_max) {
             return None;
         }
-        let state = State { best: None, t_max };
-        let mut search = Search::<ANY, true, _> {
-            world: self,
-            ray,
-            local: ray,
-            instance: InstanceId::NONE,
-            filter: &filter,
-            state,
-        };
+        let mut search = Search::<ANY, true, _>::new(self, ray, t_max, &filter);
         self.hierarchies.top.traverse(self.level, course, &mut search);
-        search.state.best
+        search.found()
     }
 
     /// Whether [`World::query_slots`] is the way for the rays in `slots`.
@@ -263,17 +255,12 @@ impl World {
             let filter = &filter;
             move |candidate: &Candidate<'_>| filter(slot, candidate)
         });
-        let mut searches: [_; WIDTH] = from_fn(|slot| Search::<ANY, true, _> {
-            world: self,
-            ray: courses[slot].ray(),
-            local: courses[slot].ray(),
-            instance: InstanceId::NONE,
-            filter: &filters[slot],
-            state: State { best: None, t_max: t_max[slot] },
+        let mut searches: [_; WIDTH] = from_fn(|slot| {
+            Search::<ANY, true, _>::new(self, courses[slot].ray(), t_max[slot], &filters[slot])
         });
         let leading = slots.keep(|slot| leads_somewhere(courses[slot].ray(), t_max[slot]));
         self.hierarchies.top.traverse_slots(self.level, leading, &courses, &mut searches);
-        slots.for_each(|slot| take(slot, searches[slot].state.best));
+        slots.for_each(|slot| take(slot, searches[slot].found()));
     }
 
     fn to_local(&self, instance: InstanceId, ray: &Ray) -> Ray {

@@ -9,21 +9,36 @@ use tenfold_math::{Id, Ray, next_up};
 
 /// What was found so far.
 #[derive(Copy, Clone)]
-pub(super) struct State {
-    pub(super) best: Option<Hit>,
-    pub(super) t_max: f32,
+struct State {
+    best: Option<Hit>,
+    t_max: f32,
 }
 
 /// A ray on its way through one hierarchy: through the world's (`TOP`) or one of those below it.
 pub(super) struct Search<'a, const ANY: bool, const TOP: bool, F> {
-    pub(super) world: &'a World,
+    world: &'a World,
     /// As the caller gave it.
-    pub(super) ray: &'a Ray,
+    ray: &'a Ray,
     /// In the space of this hierarchy.
-    pub(super) local: &'a Ray,
-    pub(super) instance: InstanceId,
-    pub(super) filter: &'a F,
-    pub(super) state: State,
+    local: &'a Ray,
+    instance: InstanceId,
+    filter: &'a F,
+    state: State,
+}
+
+impl<'a, const ANY: bool, F> Search<'a, ANY, true, F> {
+    /// Of a ray that sets out.
+    #[inline(always)]
+    pub(super) fn new(world: &'a World, ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
+        let state = State { best: None, t_max };
+        Self { world, ray, local: ray, instance: InstanceId::NONE, filter, state }
+    }
+
+    /// What was found.
+    #[inline(always)]
+    pub(super) fn found(&self) -> Option<Hit> {
+        self.state.best
+    }
 }
 
 impl<const ANY: bool, const TOP: bool, F: Fn(&Candidate<'_>) -> bool> Search<'_, ANY, TOP, F> {

@@ -1,7 +1,7 @@
 use tenfold_math::{Vec2, Vec3};
 use tenfold_spectrum::{N, SampledSpectrum};
 
-use super::fresnel::{fresnel_conductor, fresnel_conductor_lanes};
+use super::fresnel::{fresnel_conductor, fresnel_conductor_array};
 use super::local::{reflect, reflect_local};
 use super::microfacet::TrowbridgeReitz;
 use super::record::{BsdfSample, Lobe, Scattering};
@@ -84,6 +84,6 @@ pub(crate) fn rough(
 ) -> ([f32; N], f32) {
     let mirror = distribution.mirror(wo, wi);
     let exists = mirror.cos != 0.0;
-    let fresnel = fresnel_conductor_lanes(mirror.cos.abs(), eta, k);
+    let fresnel = fresnel_conductor_array(mirror.cos.abs(), eta, k);
     (fresnel.map(|f| if exists { f * mirror.value } else { 0.0 }), if exists { mirror.pdf } else { 0.0 })
 }

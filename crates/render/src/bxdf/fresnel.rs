@@ -37,7 +37,7 @@ pub fn fresnel_dielectric_lanes(cos_i: f32, eta: SampledSpectrum) -> SampledSpec
 /// to the dielectric, per lane.
 #[inline(always)]
 pub fn fresnel_conductor(cos_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -> SampledSpectrum {
-    SampledSpectrum::new(fresnel_conductor_lanes(cos_i, eta.to_array(), k.to_array()))
+    SampledSpectrum::new(fresnel_conductor_array(cos_i, eta.to_array(), k.to_array()))
 }
 
 /// [`fresnel_conductor`] of numbers that are not in a vector register.
@@ -45,7 +45,7 @@ pub fn fresnel_conductor(cos_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -
 /// Fresnel's equations with a complex index, written in real numbers with `a² + b² = |η² - sin²θ|`
 /// (Born and Wolf 1999, §14.2).
 #[inline(always)]
-pub(crate) fn fresnel_conductor_lanes(cos_i: f32, eta: [f32; N], k: [f32; N]) -> [f32; N] {
+pub(crate) fn fresnel_conductor_array(cos_i: f32, eta: [f32; N], k: [f32; N]) -> [f32; N] {
     let cos_i = cos_i.clamp(0.0, 1.0);
     let cos2 = cos_i * cos_i;
     let sin2 = 1.0 - cos2;

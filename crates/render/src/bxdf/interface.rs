@@ -1,7 +1,7 @@
 use tenfold_math::{Vec2, Vec3};
 
 use super::fresnel::fresnel_dielectric;
-use super::local::{reflect, reflect_local, refract, refract_local, refraction, same_hemisphere, select};
+use super::local::{either, reflect, reflect_local, refract, refract_local, refraction, same_hemisphere};
 use super::microfacet::TrowbridgeReitz;
 use super::record::Scattering;
 
@@ -97,11 +97,11 @@ impl Interface {
     fn facet(&self, wo: Vec3, wi: Vec3) -> Facet {
         let eta = self.eta_from(wo);
         let reflects = same_hemisphere(wo, wi);
-        let half = wo + select(reflects, wi, wi * eta);
+        let half = wo + either(reflects, wi, wi * eta);
         let length2 = half.length_squared();
         let length = length2.sqrt();
         // On the side of `wo`.
-        let m = select(reflects, half / length, half * (1f32.copysign(half.z * wo.z) / length));
+        let m = either(reflects, half / length, half * (1f32.copysign(half.z * wo.z) / length));
         let (cos_o, cos_i) = (wo.dot(m), wi.dot(m));
         // Back-facing microfacets transmit nothing.
         let is_facing = (cos_o > 0.0) & (reflects | (cos_i < 0.0));
@@ -150,7 +150,7 @@ impl Interface {
         let m = self.distribution.sample_visible(wo, u);
         let reflected = u_lobe < fresnel_dielectric(wo.dot(m).abs(), eta);
         let (through, refracts) = refraction(wo, m, eta);
-        let wi = select(reflected, reflect(wo, m), through);
+        let wi = either(reflected, reflect(wo, m), through);
         // Light reflected to below, or refracted to above, would have to meet the surface again.
         let leaves = (wi.z != 0.0) & (same_hemisphere(wo, wi) == reflected);
         InterfaceDirection { wi, reflected, exists: (reflected | refracts) & leaves }

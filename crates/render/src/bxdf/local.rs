@@ -10,7 +10,7 @@ pub(crate) fn same_hemisphere(a: Vec3, b: Vec3) -> bool {
 
 /// `a` or else `b`, without a branch.
 #[inline(always)]
-pub(crate) fn select(condition: bool, a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn either(condition: bool, a: Vec3, b: Vec3) -> Vec3 {
     let of = |a: f32, b: f32| if condition { a } else { b };
     Vec3::new(of(a.x, b.x), of(a.y, b.y), of(a.z, b.z))
 }

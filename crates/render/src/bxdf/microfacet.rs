@@ -3,7 +3,7 @@ use tenfold_math::ops;
 
 use tenfold_math::{Vec2, Vec3};
 
-use super::local::{same_hemisphere, select};
+use super::local::{either, same_hemisphere};
 
 /// Least α: the distribution is no narrower than this in either direction unless it is smooth in both.
 const ALPHA_MIN: f32 = 1e-4;
@@ -150,6 +150,6 @@ impl TrowbridgeReitz {
         let scale = 1.0 / m.length_squared().sqrt();
         let is_usable = (scale > 0.0) & (scale < f32::INFINITY);
         let is_middle = (u.x == 0.5) & (u.y == 0.5);
-        select(is_usable & !is_middle, m * scale, Vec3::Z) * sign
+        either(is_usable & !is_middle, m * scale, Vec3::Z) * sign
     }
 }

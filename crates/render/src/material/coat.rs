@@ -43,7 +43,7 @@ impl Coat {
 
     /// Whether anything of it varies over a surface.
     pub(super) fn is_textured(&self) -> bool {
-        let Self { roughness, thickness, albedo, g, .. } = self;
+        let Self { eta: _, roughness, thickness, albedo, g, max_depth: _, samples: _, table: _ } = self;
         roughness.constant().is_none()
             || thickness.constant().and(g.constant()).is_none()
             || albedo.constant().is_none()
