@@ -253,7 +253,12 @@ const GRAIN: usize = 1 << 14;
 
 /// Where the first value is that a predicate holds for.
 fn first<T: Sync>(values: &[T], holds: impl Fn(&T) -> bool + Send + Sync) -> Option<usize> {
-    values.par_iter().with_min_len(GRAIN).position_first(holds)
+    values.par_chunks(GRAIN).enumerate().find_map_first(|(i, chunk)| {
+        // Without branches, which vector code has none of: mostly there is none.
+        let is_there = chunk.iter().fold(false, |any, value| any | holds(value));
+        let at = || chunk.iter().position(&holds).map(|at| GRAIN * i + at);
+        if is_there { at() } else { None }
+    })
 }
 
 /// Maps all values.
