@@ -24,6 +24,6 @@ pub use params::{
     Texture,
 };
 pub use pbrt::{read_pbrt, read_pbrt_str};
-pub use ply::{PlyError, PlyMesh, read_ply};
-pub use resources::{EmbeddedResources, FileResources, Resources, unpack};
+pub use ply::{PlyError, PlyMesh, read_ply, read_ply_in_pieces};
+pub use resources::{EmbeddedResources, FileResources, LargeFile, Resources, unpack};
 pub use source::{FileId, Location, SourceFile, SourceMap, Span};

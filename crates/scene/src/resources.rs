@@ -13,6 +13,11 @@ pub trait Resources: Sync {
     /// Where the file is missing or cannot be read.
     fn load(&self, path: &str) -> io::Result<Vec<u8>>;
 
+    /// The same file, to be read piece by piece, where memory for all of its bytes is worth saving: none where [`Resources::load`] is to be asked.
+    fn large(&self, _path: &str) -> Option<LargeFile> {
+        None
+    }
+
     /// The place that a name in a scene stands for, for messages.
     fn resolve(&self, path: &str) -> PathBuf;
 
@@ -46,6 +51,11 @@ impl Resources for FileResources {
         read_file(&self.resolve(path))
     }
 
+    #[cfg(unix)]
+    fn large(&self, path: &str) -> Option<LargeFile> {
+        LargeFile::open(&self.resolve(path)).ok().filter(|file| file.len() > READ_AT_ONCE as u64)
+    }
+
     fn resolve(&self, path: &str) -> PathBuf {
         let beside = self.root.join(path);
         if beside.exists() || !Path::new(path).exists() { beside } else { PathBuf::from(path) }
@@ -57,19 +67,54 @@ impl Resources for FileResources {
     }
 }
 
+/// A file on disk that several threads read pieces of.
+#[derive(Debug)]
+pub struct LargeFile {
+    #[cfg_attr(not(unix), expect(dead_code, reason = "there are none"))]
+    file: std::fs::File,
+    len: u64,
+}
+
+impl LargeFile {
+    /// A regular file.
+    ///
+    /// # Errors
+    /// Where it is missing, cannot be read, or is another kind of file.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let len = size(path)?;
+        Ok(Self { file: std::fs::File::open(path)?, len })
+    }
+
+    /// How many bytes there are.
+    pub(crate) fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Fills `bytes` with those behind the first `before`.
+    pub(crate) fn read_at(&self, before: u64, bytes: &mut [u8]) -> io::Result<()> {
+        #[cfg(unix)]
+        return std::os::unix::fs::FileExt::read_exact_at(&self.file, bytes, before);
+        #[cfg(not(unix))]
+        return Err(io::ErrorKind::Unsupported.into());
+    }
+}
+
 /// Reads a regular file: devices and pipes may never end.
 pub(crate) fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(io::Error::other("not a regular file"));
-    }
+    let size = size(path)?;
     #[cfg(unix)]
-    if metadata.len() > READ_AT_ONCE as u64
-        && let Ok(size) = usize::try_from(metadata.len())
+    if size > READ_AT_ONCE as u64
+        && let Ok(size) = usize::try_from(size)
     {
         return read_in_parts(path, size);
     }
     std::fs::read(path)
+}
+
+/// The size of a regular file.
+fn size(path: &Path) -> io::Result<u64> {
+    let metadata = std::fs::metadata(path)?;
+    if metadata.is_file() { Ok(metadata.len()) } else { Err(io::Error::other("not a regular file")) }
 }
 
 /// Larger files are read in parts of this size, in bytes, by all threads: most of the time goes into memory that is used for the

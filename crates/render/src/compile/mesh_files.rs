@@ -8,7 +8,7 @@ use std::{
 };
 use tenfold_geometry::{MeshError, Shape};
 use tenfold_math::Transform;
-use tenfold_scene::{Description, PlyMesh, Resources, ShapeEntity, read_ply};
+use tenfold_scene::{Description, PlyMesh, Resources, ShapeEntity, read_ply, read_ply_in_pieces};
 
 /// A file at a place: its identity, the transform's bits, and whether its orientation is reversed.
 type Placed = (PathBuf, [u32; 12], bool);
@@ -86,6 +86,9 @@ fn file_of(shape: &ShapeEntity) -> Option<&str> {
 }
 
 fn read(resources: &dyn Resources, name: &str) -> Result<PlyMesh, String> {
+    if let Some(mesh) = resources.large(name).and_then(|file| read_ply_in_pieces(&file)) {
+        return Ok(mesh);
+    }
     read_ply(&read_file(resources, name)?).map_err(|error| format!("in \"{name}\": {error}"))
 }
 

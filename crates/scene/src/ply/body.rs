@@ -2,9 +2,10 @@
 
 use super::{
     PlyError, PlyMesh,
-    bulk::{Faces, Field, Items, layout},
+    bulk::{Bytes, Faces, Field, Items, Vertex, layout},
     header::{Element, Format, Header, Property, Scalar},
 };
+use crate::LargeFile;
 use rayon::prelude::*;
 use tenfold_math::{Vec2, Vec3};
 
@@ -22,9 +23,20 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<PlyMesh, PlyError> {
     }
 }
 
+/// Reads all elements piece by piece: `None` where that cannot be done, for whatever reason.
+pub(super) fn read_pieces(header: &Header, file: &LargeFile) -> Option<PlyMesh> {
+    let big_endian = match header.format {
+        Format::Ascii => return None,
+        Format::LittleEndian => false,
+        Format::BigEndian => true,
+    };
+    let source = Pieces { file, position: header.body as u64, big_endian };
+    read_elements(header, source, usize::try_from(file.len()).ok()?).ok()
+}
+
 fn read_elements<S: Source>(header: &Header, mut source: S, bytes: usize) -> Result<PlyMesh, PlyError> {
     // Nothing is allocated for what the file cannot hold. An ASCII file may lack the last blank.
-    let held = source.remaining() as u64 + 1;
+    let held = source.remaining() + 1;
     for element in &header.elements {
         let size = element.min_size(header.format);
         if element.count.checked_mul(size).is_none_or(|need| need > held) {
@@ -83,16 +95,17 @@ fn read_vertices<S: Source>(source: &mut S, element: &Element, mesh: &mut PlyMes
         let slot = |slot: usize| -> Field {
             fields[slots.iter().position(|s| *s == Some(slot)).unwrap_or_default()]
         };
-        mesh.positions = items.vectors([slot(0), slot(1), slot(2)]);
-        if has_normals {
-            mesh.normals = items.vectors([slot(3), slot(4), slot(5)]);
+        let vertex = Vertex {
+            position: [slot(0), slot(1), slot(2)],
+            normal: has_normals.then(|| [slot(3), slot(4), slot(5)]),
+            uv: uv.map(|_| [slot(6), slot(7)]),
+        };
+        if let Some(vertices) = items.vertices(&vertex) {
+            (mesh.positions, mesh.normals, mesh.uvs) = vertices;
+            let size = items.size();
+            source.pass(size);
+            return Ok(());
         }
-        if uv.is_some() {
-            mesh.uvs = items.vectors([slot(6), slot(7)]);
-        }
-        let size = items.size();
-        source.pass(size);
-        return finite(mesh);
     }
 
     let count = element.count as usize;
@@ -123,17 +136,6 @@ fn read_vertices<S: Source>(source: &mut S, element: &Element, mesh: &mut PlyMes
     Ok(())
 }
 
-/// Refuses vertices that are not finite.
-fn finite(mesh: &PlyMesh) -> Result<(), PlyError> {
-    let positions = mesh.positions.par_iter().position_first(|v| !v.is_finite());
-    let normals = mesh.normals.par_iter().position_first(|v| !v.is_finite());
-    let uvs = mesh.uvs.par_iter().position_first(|v| !v.is_finite());
-    match [positions, normals, uvs].into_iter().flatten().min() {
-        Some(first) => Err(PlyError::NotFinite(first as u64)),
-        None => Ok(()),
-    }
-}
-
 fn read_faces<S: Source>(
     source: &mut S,
     element: &Element,
@@ -156,18 +158,18 @@ fn read_faces<S: Source>(
     for n in [3, 4] {
         if let Some(faces) = Faces::new(element, corners, number, n)
             && let Some(items) = source.items(element.count, faces.stride)
-            && faces.fit(&items, n)
         {
-            if n == 3 {
-                mesh.triangles = faces.corners(&items, vertices)?;
-            } else {
-                mesh.quads = faces.corners(&items, vertices)?;
+            let found = match n {
+                3 => faces.read(&items, vertices).map(|(faces, numbers)| (faces, Vec::new(), numbers)),
+                _ => faces.read(&items, vertices).map(|(faces, numbers)| (Vec::new(), faces, numbers)),
+            };
+            if let Some(found) = found {
+                (mesh.triangles, mesh.quads, mesh.face_indices) = found;
                 mesh.quads.par_iter_mut().for_each(|face| face.swap(2, 3));
+                let size = items.size();
+                source.pass(size);
+                return Ok(());
             }
-            mesh.face_indices = faces.numbers(&items);
-            let size = items.size();
-            source.pass(size);
-            return Ok(());
         }
     }
 
@@ -242,9 +244,9 @@ fn at(element: &Element, index: u64) -> impl Fn(Fault) -> PlyError {
 /// The numbers of a file, one after the other.
 trait Source {
     /// How many bytes are left.
-    fn remaining(&self) -> usize;
+    fn remaining(&self) -> u64;
 
-    /// The next items of `stride` bytes each: none where they are no bytes, or too few.
+    /// The next items of `stride` bytes each: none where they are no bytes, or too few. What is wrong with them is found one by one.
     fn items(&self, count: u64, stride: usize) -> Option<Items<'_>>;
 
     /// Passes over bytes, of which as many must be there.
@@ -276,12 +278,12 @@ impl<const BIG: bool> Binary<'_, BIG> {
 }
 
 impl<const BIG: bool> Source for Binary<'_, BIG> {
-    fn remaining(&self) -> usize {
-        self.data.len()
+    fn remaining(&self) -> u64 {
+        self.data.len() as u64
     }
 
     fn items(&self, count: u64, stride: usize) -> Option<Items<'_>> {
-        Items::new(self.data, count, stride, BIG)
+        Items::new(Bytes::Memory(self.data), self.data.len() as u64, count, stride, BIG)
     }
 
     fn pass(&mut self, bytes: usize) {
@@ -305,6 +307,41 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
         let bytes = usize::try_from(count).ok().and_then(|n| n.checked_mul(scalar.size()));
         self.data = bytes.and_then(|n| self.data.get(n..)).ok_or(Fault::Truncated)?;
         Ok(())
+    }
+}
+
+/// Binary numbers in a file: elements whose items all have the same size, and nothing else.
+struct Pieces<'a> {
+    file: &'a LargeFile,
+    /// How many bytes were passed.
+    position: u64,
+    big_endian: bool,
+}
+
+impl Source for Pieces<'_> {
+    fn remaining(&self) -> u64 {
+        self.file.len() - self.position
+    }
+
+    fn items(&self, count: u64, stride: usize) -> Option<Items<'_>> {
+        let bytes = Bytes::File(self.file, self.position);
+        Items::new(bytes, self.remaining(), count, stride, self.big_endian)
+    }
+
+    fn pass(&mut self, bytes: usize) {
+        self.position += bytes as u64;
+    }
+
+    fn float(&mut self, _: Scalar) -> Result<f32, Fault> {
+        Err(Fault::Truncated)
+    }
+
+    fn integer(&mut self, _: Scalar) -> Result<i64, Fault> {
+        Err(Fault::Truncated)
+    }
+
+    fn skip(&mut self, _: Scalar, _: u64) -> Result<(), Fault> {
+        Err(Fault::Truncated)
     }
 }
 
@@ -334,8 +371,8 @@ impl<'a> Ascii<'a> {
 }
 
 impl Source for Ascii<'_> {
-    fn remaining(&self) -> usize {
-        self.data.len()
+    fn remaining(&self) -> u64 {
+        self.data.len() as u64
     }
 
     fn items(&self, _: u64, _: usize) -> Option<Items<'_>> {

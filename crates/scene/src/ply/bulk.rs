@@ -1,18 +1,28 @@
-//! Binary elements whose items all have the same size: all threads read them at once.
+//! Binary elements whose items all have the same size: all threads read them at once, piece by piece, from memory or from a file.
 
-use super::{
-    PlyError,
-    header::{Element, Scalar},
-};
+use super::header::{Element, Scalar};
+use crate::LargeFile;
+use bytemuck::{Zeroable, allocation::zeroed_vec};
 use rayon::prelude::*;
+use tenfold_math::{Vec2, Vec3};
 
-/// Items in one piece of work, at least.
-const GRAIN: usize = 1 << 13;
+/// Bytes in one piece of work, about: they fit the cache near the processor.
+const PIECE: usize = 1 << 16;
+
+/// Where items are.
+#[derive(Copy, Clone)]
+pub(super) enum Bytes<'a> {
+    /// Here.
+    Memory(&'a [u8]),
+    /// In a file, behind so many bytes.
+    File(&'a LargeFile, u64),
+}
 
 /// The items of an element, each of `stride` bytes.
 #[derive(Copy, Clone)]
 pub(super) struct Items<'a> {
-    bytes: &'a [u8],
+    bytes: Bytes<'a>,
+    count: usize,
     stride: usize,
     big_endian: bool,
 }
@@ -24,6 +34,16 @@ pub(super) struct Field {
     pub(super) at: usize,
     pub(super) scalar: Scalar,
 }
+
+/// Which numbers of an item are a vertex.
+pub(super) struct Vertex {
+    pub(super) position: [Field; 3],
+    pub(super) normal: Option<[Field; 3]>,
+    pub(super) uv: Option<[Field; 2]>,
+}
+
+/// Vertices: positions, normals and texture coordinates.
+type Vertices = (Vec<Vec3>, Vec<Vec3>, Vec<Vec2>);
 
 /// The faces of an element, all with the same number of corners.
 pub(super) struct Faces {
@@ -50,31 +70,93 @@ pub(super) fn layout(element: &Element) -> Option<(Vec<Field>, usize)> {
 }
 
 impl<'a> Items<'a> {
-    /// The first `count` items of `data`; none where there are not as many.
-    pub(super) fn new(data: &'a [u8], count: u64, stride: usize, big_endian: bool) -> Option<Self> {
-        let size = usize::try_from(count).ok()?.checked_mul(stride)?;
-        let bytes = data.get(..size).filter(|_| stride > 0)?;
-        Some(Self { bytes, stride, big_endian })
+    /// The first `count` items of `bytes`, of which there are `held`; none where there are not as many.
+    pub(super) fn new(
+        bytes: Bytes<'a>,
+        held: u64,
+        count: u64,
+        stride: usize,
+        big_endian: bool,
+    ) -> Option<Self> {
+        let fit = count.checked_mul(stride as u64).is_some_and(|size| size <= held) && stride > 0;
+        let count = usize::try_from(count).ok().filter(|_| fit)?;
+        Some(Self { bytes, count, stride, big_endian })
     }
 
     /// How many bytes they take.
     pub(super) fn size(&self) -> usize {
-        self.bytes.len()
+        self.count * self.stride
     }
 
-    /// What `read` makes of every item.
-    fn map<T: Send>(&self, read: impl Fn(&[u8]) -> T + Send + Sync) -> Vec<T> {
-        self.bytes.par_chunks_exact(self.stride).with_min_len(GRAIN).map(read).collect()
-    }
-
-    /// Vectors of the numbers in `fields`.
-    pub(super) fn vectors<T: From<[f32; N]> + Send, const N: usize>(&self, fields: [Field; N]) -> Vec<T> {
-        if !self.big_endian && fields.iter().all(|field| field.scalar == Scalar::F32) {
-            let at = fields.map(|field| field.at);
-            return self.map(|item| T::from(at.map(|at| f32::from_le_bytes(bytes_at(item, at)))));
+    /// Gives `convert` every item, and its place in each array: an empty array gets nothing, the others are as long as there are items. `None` where it
+    /// refuses one, or the file cannot be read.
+    fn convert<A: Send, B: Send, C: Send>(
+        &self,
+        (mut a, mut b, mut c): (&mut [A], &mut [B], &mut [C]),
+        convert: impl Fn(&[u8], Option<&mut A>, Option<&mut B>, Option<&mut C>) -> Option<()> + Sync,
+    ) -> Option<()> {
+        fn take<'a, T>(from: &mut &'a mut [T], n: usize) -> std::slice::IterMut<'a, T> {
+            let n = n.min(from.len());
+            from.split_off_mut(..n).unwrap_or_default().iter_mut()
         }
-        let big_endian = self.big_endian;
-        self.map(|item| T::from(fields.map(|field| field.float(item, big_endian))))
+        let n = (PIECE / self.stride).max(1);
+        let pieces: Vec<_> = (0..self.count)
+            .step_by(n)
+            .map(|start| (start, take(&mut a, n), take(&mut b, n), take(&mut c, n)))
+            .collect();
+        pieces.into_par_iter().try_for_each_init(Vec::new, |buffer, (start, mut a, mut b, mut c)| {
+            let (start, size) = (start * self.stride, n.min(self.count - start) * self.stride);
+            let bytes = match self.bytes {
+                Bytes::Memory(bytes) => &bytes[start..start + size],
+                Bytes::File(file, before) => {
+                    buffer.resize(size, 0);
+                    file.read_at(before + start as u64, buffer).ok()?;
+                    &buffer[..]
+                }
+            };
+            bytes.chunks_exact(self.stride).try_for_each(|item| convert(item, a.next(), b.next(), c.next()))
+        })
+    }
+
+    /// As many as there are items; none where they are `absent`.
+    fn array<T: Zeroable>(&self, is_there: bool) -> Vec<T> {
+        zeroed_vec(if is_there { self.count } else { 0 })
+    }
+
+    /// The vertices; `None` where one is not finite.
+    pub(super) fn vertices(&self, vertex: &Vertex) -> Option<Vertices> {
+        let fields = [
+            Some(&vertex.position[..]),
+            vertex.normal.as_ref().map(|n| &n[..]),
+            vertex.uv.as_ref().map(|uv| &uv[..]),
+        ];
+        let are_floats = fields.into_iter().flatten().flatten().all(|field| field.scalar == Scalar::F32);
+        match are_floats && !self.big_endian {
+            true => self.vertices_of(vertex, |item, field| f32::from_le_bytes(bytes_at(item, field.at))),
+            false => self.vertices_of(vertex, |item, field| field.float(item, self.big_endian)),
+        }
+    }
+
+    fn vertices_of(&self, vertex: &Vertex, float: impl Fn(&[u8], Field) -> f32 + Sync) -> Option<Vertices> {
+        let Vertex { position, normal, uv } = *vertex;
+        let mut positions: Vec<Vec3> = self.array(true);
+        let mut normals: Vec<Vec3> = self.array(normal.is_some());
+        let mut uvs: Vec<Vec2> = self.array(uv.is_some());
+        self.convert((&mut positions, &mut normals, &mut uvs), |item, to_position, to_normal, to_uv| {
+            let p = Vec3::from(position.map(|field| float(item, field)));
+            *to_position? = p;
+            let mut is_finite = p.is_finite();
+            if let (Some(to), Some(fields)) = (to_normal, normal) {
+                *to = fields.map(|field| float(item, field)).into();
+                is_finite &= to.is_finite();
+            }
+            if let (Some(to), Some(fields)) = (to_uv, uv) {
+                *to = fields.map(|field| float(item, field)).into();
+                is_finite &= to.is_finite();
+            }
+            is_finite.then_some(())
+        })?;
+        Some((positions, normals, uvs))
     }
 }
 
@@ -102,51 +184,59 @@ impl Faces {
         Some(Self { stride: at, corners, index, number: number_field })
     }
 
-    /// Whether all items have `corners` corners, so that none has another size than it should.
-    pub(super) fn fit(&self, items: &Items<'_>, corners: usize) -> bool {
-        let chunks = items.bytes.par_chunks_exact(self.stride).with_min_len(GRAIN);
-        match self.corners.scalar {
-            Scalar::U8 => chunks.all(|item| usize::from(item[self.corners.at]) == corners),
-            _ => chunks.all(|item| self.corners.integer(item, items.big_endian) == corners as i64),
-        }
-    }
-
-    /// The corners of all faces, below `vertices`.
-    pub(super) fn corners<const N: usize>(
+    /// The corners of all faces, `N` of each and all below `vertices`, and the numbers that they have. `None` where a face has others.
+    pub(super) fn read<const N: usize>(
         &self,
         items: &Items<'_>,
         vertices: u64,
-    ) -> Result<Vec<[u32; N]>, PlyError> {
-        let first = self.corners.at + self.corners.scalar.size();
-        let size = self.index.size();
-        let corner = |item: &[u8], i: usize| {
-            Field { at: first + i * size, scalar: self.index }.integer(item, items.big_endian)
-        };
-        // What fits no index is past the last vertex, too: a file of 4 billion vertices has 48 GB.
-        let most = u32::try_from(vertices).unwrap_or(u32::MAX);
-        let faces: Vec<[u32; N]> = match self.index {
-            // Negative ones become large.
-            Scalar::I32 | Scalar::U32 if !items.big_endian => items
-                .map(|item| std::array::from_fn(|i| u32::from_le_bytes(bytes_at(item, first + i * size)))),
-            _ => {
-                items.map(|item| std::array::from_fn(|i| u32::try_from(corner(item, i)).unwrap_or(u32::MAX)))
-            }
-        };
-        let bad = |face: &[u32; N]| face.iter().position(|&i| i >= most);
-        match faces.par_iter().with_min_len(GRAIN).position_first(|face| bad(face).is_some()) {
-            None => Ok(faces),
-            Some(face) => {
-                let item = &items.bytes[face * self.stride..][..self.stride];
-                let index = corner(item, bad(&faces[face]).unwrap_or(0));
-                Err(PlyError::IndexOutOfRange { face: face as u64, index, vertices })
-            }
+    ) -> Option<(Vec<[u32; N]>, Vec<i32>)>
+    where
+        [u32; N]: Zeroable,
+    {
+        let big_endian = items.big_endian;
+        match (self.corners.scalar, self.index) {
+            // Negative indices become large.
+            (Scalar::U8, Scalar::I32 | Scalar::U32) if !big_endian => self.read_with(
+                items,
+                vertices,
+                |item| item[self.corners.at].into(),
+                |item, field| u32::from_le_bytes(bytes_at(item, field.at)),
+            ),
+            _ => self.read_with(
+                items,
+                vertices,
+                |item| self.corners.integer(item, big_endian),
+                |item, field| u32::try_from(field.integer(item, big_endian)).unwrap_or(u32::MAX),
+            ),
         }
     }
 
-    /// The numbers of all faces, where they have some.
-    pub(super) fn numbers(&self, items: &Items<'_>) -> Vec<i32> {
-        let big_endian = items.big_endian;
-        self.number.map(|field| items.map(|item| field.integer(item, big_endian) as i32)).unwrap_or_default()
+    fn read_with<const N: usize>(
+        &self,
+        items: &Items<'_>,
+        vertices: u64,
+        length: impl Fn(&[u8]) -> i64 + Sync,
+        index: impl Fn(&[u8], Field) -> u32 + Sync,
+    ) -> Option<(Vec<[u32; N]>, Vec<i32>)>
+    where
+        [u32; N]: Zeroable,
+    {
+        let mut faces: Vec<[u32; N]> = items.array(true);
+        let mut numbers: Vec<i32> = items.array(self.number.is_some());
+        // What fits no index is past the last vertex, too: a file of 4 billion vertices has 48 GB.
+        let most = u32::try_from(vertices).unwrap_or(u32::MAX);
+        let first = self.corners.at + self.corners.scalar.size();
+        let fields: [Field; N] =
+            std::array::from_fn(|i| Field { at: first + i * self.index.size(), scalar: self.index });
+        items.convert((&mut faces, &mut numbers, &mut [(); 0]), |item, to_face, to_number, _| {
+            let face = fields.map(|field| index(item, field));
+            *to_face? = face;
+            if let (Some(to), Some(field)) = (to_number, self.number) {
+                *to = field.integer(item, items.big_endian) as i32;
+            }
+            (length(item) == N as i64 && face.iter().all(|&i| i < most)).then_some(())
+        })?;
+        Some((faces, numbers))
     }
 }
 
@@ -181,9 +271,7 @@ impl Field {
 /// Some bytes of an item.
 #[inline]
 fn bytes_at<const N: usize>(item: &[u8], at: usize) -> [u8; N] {
-    let mut bytes = [0; N];
-    bytes.copy_from_slice(&item[at..at + N]);
-    bytes
+    item[at..at + N].try_into().expect("as many bytes as were taken")
 }
 
 /// Some bytes of an item, the lowest first.

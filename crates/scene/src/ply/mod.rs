@@ -4,6 +4,7 @@ mod body;
 mod bulk;
 mod header;
 
+use crate::LargeFile;
 use std::borrow::Cow;
 use tenfold_math::{Vec2, Vec3};
 
@@ -130,4 +131,17 @@ pub fn read_ply(bytes: &[u8]) -> Result<PlyMesh, PlyError> {
     };
     let header = header::parse(&bytes)?;
     body::read(&header, &bytes)
+}
+
+/// A header that is longer is not looked for in pieces.
+const HEAD: u64 = 1 << 14;
+
+/// As [`read_ply`], from a file whose bytes are not kept: where it is binary, and the items of its elements all have the same size. `None` where they do not,
+/// or anything is wrong: [`read_ply`] reads the others, and says what.
+pub fn read_ply_in_pieces(file: &LargeFile) -> Option<PlyMesh> {
+    let mut head = vec![0; HEAD.min(file.len()) as usize];
+    file.read_at(0, &mut head).ok()?;
+    // Of a line that ends here the end is not known.
+    let header = header::parse(&head).ok().filter(|header| header.body < head.len())?;
+    body::read_pieces(&header, file)
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 use tenfold_math::{Vec2, Vec3};
-use tenfold_scene::{PlyError, PlyMesh, read_ply};
+use tenfold_scene::{LargeFile, PlyError, PlyMesh, read_ply, read_ply_in_pieces};
 
 /// Bytes of a binary body.
 #[derive(Default)]
@@ -246,6 +246,33 @@ fn strip(
     [ascii.into_bytes(), binary("little", false), binary("big", true)]
 }
 
+/// What is read of a file piece by piece.
+fn in_pieces(bytes: &[u8]) -> Option<PlyMesh> {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("mesh.ply");
+    std::fs::write(&path, bytes).unwrap();
+    read_ply_in_pieces(&LargeFile::open(&path).unwrap())
+}
+
+#[test]
+fn files_with_items_of_several_sizes_or_a_long_header_are_not_read_in_pieces() {
+    let [_, binary, _] = strip(TYPES[0], 4, 100, |_, _, _| None);
+    assert!(in_pieces(&binary).is_some());
+    // The last face gets one corner less: behind its number and the length of its list there were four, and its flags.
+    let mut mixed = binary.clone();
+    let length = mixed.len() - 18;
+    assert_eq!(mixed[length], 4);
+    mixed[length] = 3;
+    mixed.truncate(mixed.len() - 4);
+    assert_eq!(in_pieces(&mixed), None);
+    assert_eq!(read_ply(&mixed).unwrap().triangles.len(), 1);
+    let mut commented = b"ply\n".to_vec();
+    commented.extend([&b"comment "[..], &[b'x'; 100], b"\n"].concat().repeat(200));
+    commented.extend(&binary[4..]);
+    assert_eq!(in_pieces(&commented), None);
+    assert_eq!(read_ply(&commented), read_ply(&binary));
+}
+
 const TYPES: [[&str; 3]; 5] = [
     ["float", "uchar", "int"],
     ["float", "char", "uint"],
@@ -263,8 +290,11 @@ fn meshes_read_in_bulk_are_those_read_one_by_one() {
             assert_eq!(mesh.positions[1], Vec3::new(22.0, 19.0, 16.0));
             assert_eq!((mesh.normals.len(), mesh.uvs.len()), (mesh.positions.len(), mesh.positions.len()));
             assert_eq!((mesh.triangles.len() + mesh.quads.len(), mesh.face_indices.len()), (20_000, 20_000));
+            assert_eq!(in_pieces(&files[0]), None, "ASCII");
             for binary in &files[1..] {
                 assert_eq!(read_ply(binary).unwrap(), mesh, "{types:?}");
+                assert_eq!(in_pieces(binary).unwrap(), mesh, "{types:?}");
+                assert_eq!(in_pieces(&binary[..binary.len() - 1]), None);
                 let cut = read_ply(&binary[..binary.len() - 1]).unwrap_err();
                 assert_eq!(cut.to_string(), "the file ends in item 19999 of \"face\"");
             }
@@ -288,6 +318,7 @@ fn faults_in_bulk_are_those_found_one_by_one() {
                 let message =
                     format!("face 12345 has the vertex 30000, but there are only {vertices}, counted from 0");
                 assert_eq!(read_ply(&bytes).unwrap_err().to_string(), message);
+                assert_eq!(in_pieces(&bytes), None);
             }
         }
         for bytes in strip(TYPES[0], corners, 20_000, change("face", 15_000, 1, -1.0)) {
@@ -300,6 +331,7 @@ fn faults_in_bulk_are_those_found_one_by_one() {
         for place in [4, 2, 8] {
             for bytes in strip(TYPES[0], corners, 20_000, change("vertex", 9_876, place, f64::NAN)) {
                 assert_eq!(read_ply(&bytes), Err(PlyError::NotFinite(9_876)));
+                assert_eq!(in_pieces(&bytes), None);
             }
         }
     }
