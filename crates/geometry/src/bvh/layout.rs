@@ -2,7 +2,7 @@
 
 use super::{
     Bvh,
-    build::{Counts, Hull, Inner, Reference, Target, Tree, Word, initialised},
+    build::{Counts, Hull, Inner, Reference, References, Target, Tree, Word, initialised},
     node::{Child, Kind, LeafPrimitive, Node, TriangleBlock, WIDTH},
     with_capacity,
 };
@@ -42,20 +42,46 @@ impl Room<'_> {
     }
 }
 
+/// What leaves name ranges of.
+pub(super) enum Sorted<'a> {
+    /// References; there may be gaps between those that leaves name.
+    References(&'a [MaybeUninit<Reference>]),
+    /// Numbers of references, which are made anew.
+    Numbers(&'a [u32], &'a dyn References),
+}
+
+/// References that leaves name, side by side.
+enum Leaves<'a> {
+    /// All, as the builder has left them.
+    Kept(&'a [MaybeUninit<Reference>]),
+    /// Some, which were made anew, behind the index of the first.
+    Made(usize, Vec<Reference>),
+}
+
+impl Leaves<'_> {
+    fn leaf(&self, first: usize, len: usize) -> &[Reference] {
+        match self {
+            // SAFETY: leaves name initialised references.
+            Self::Kept(all) => unsafe { initialised(&all[first..first + len]) },
+            Self::Made(before, made) => &made[first - before..][..len],
+        }
+    }
+}
+
 /// What is laid out.
 struct Source<'a, P> {
-    references: &'a [MaybeUninit<Reference>],
+    sorted: Sorted<'a>,
     positions: &'a P,
 }
 
-/// The hierarchy of a tree over sorted references. `positions` gives the corners of triangles.
+/// The hierarchy of a tree over what was sorted. `positions` gives the corners of triangles.
 ///
 /// # Safety
 /// The references that leaves name must be initialised.
 pub(super) unsafe fn lay_out(
     tree: &Tree,
     bounds: Bounds3,
-    references: &[MaybeUninit<Reference>],
+    sorted: Sorted<'_>,
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) -> Bvh {
     let counts = tree.counts();
@@ -71,7 +97,7 @@ pub(super) unsafe fn lay_out(
         shapes: &mut bvh.shapes.spare_capacity_mut()[..counts.shapes],
         first: Counts::default(),
     };
-    Source { references, positions }.tree(tree, room);
+    Source { sorted, positions }.tree(tree, room);
     // SAFETY: every subtree writes all elements of its room, whose sizes are those that its nodes and leaves were counted to; `Room::take`
     // panics where there is less, and `Room::assert_full` where there is more.
     unsafe {
@@ -88,7 +114,7 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         match tree {
             Tree::Node(inner) => self.node(inner, room),
             Tree::Bulk(bulk) => {
-                self.bulk(&mut bulk.nodes.iter(), &mut room);
+                self.bulk(&mut bulk.nodes.iter(), &self.references(bulk.first, bulk.len), &mut room);
                 room.assert_full();
             }
             Tree::Leaf { .. } => {}
@@ -101,7 +127,9 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         let mut below = Vec::new();
         for (slot, (bounds, tree)) in inner.children.iter().enumerate() {
             let child = match tree {
-                Tree::Leaf { first, len } => self.leaf(self.references(*first, *len), &mut room),
+                Tree::Leaf { first, len } => {
+                    self.leaf(self.references(*first, *len).leaf(*first, *len), &mut room)
+                }
                 _ => {
                     let room = room.take(tree.counts());
                     let child = Child::new(Kind::Node, room.first.nodes);
@@ -117,7 +145,12 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
     }
 
     /// The next node and all below it. Returns the box around it.
-    fn bulk(&self, nodes: &mut std::slice::Iter<'_, [Option<Word>; WIDTH]>, room: &mut Room<'_>) -> Bounds3 {
+    fn bulk(
+        &self,
+        nodes: &mut std::slice::Iter<'_, [Option<Word>; WIDTH]>,
+        references: &Leaves<'_>,
+        room: &mut Room<'_>,
+    ) -> Bounds3 {
         let own = room.take(Counts { nodes: 1, ..Counts::default() });
         let mut node = Node::EMPTY;
         let mut all = Hull::EMPTY;
@@ -125,7 +158,7 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         // The leaves of a node lie side by side.
         for (slot, word) in words.iter().enumerate() {
             if let Some(Word::Leaf { first, len }) = word {
-                let leaf = self.references(*first as usize, usize::from(*len));
+                let leaf = references.leaf(*first as usize, usize::from(*len));
                 let hull = leaf.iter().fold(Hull::EMPTY, |hull, r| hull.union(r.hull()));
                 node.set(slot, &hull.bounds(), self.leaf(leaf, room));
                 all = all.union(&hull);
@@ -134,7 +167,7 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         for (slot, word) in words.iter().enumerate() {
             if let Some(Word::Node) = word {
                 let index = room.first.nodes;
-                let bounds = self.bulk(nodes, room);
+                let bounds = self.bulk(nodes, references, room);
                 node.set(slot, &bounds, Child::new(Kind::Node, index));
                 all = all.union(&Hull::new(bounds));
             }
@@ -143,9 +176,16 @@ impl<P: Fn(LeafPrimitive) -> [Vec3; 3] + Sync> Source<'_, P> {
         all.bounds()
     }
 
-    fn references(&self, first: usize, len: usize) -> &[Reference] {
-        // SAFETY: leaves name initialised references.
-        unsafe { initialised(&self.references[first..first + len]) }
+    /// Those that leaves in this range name.
+    fn references(&self, first: usize, len: usize) -> Leaves<'_> {
+        match self.sorted {
+            Sorted::References(references) => Leaves::Kept(references),
+            Sorted::Numbers(numbers, source) => {
+                let mut made = Vec::with_capacity(len);
+                source.choose(&numbers[first..first + len], &mut made);
+                Leaves::Made(first, made)
+            }
+        }
     }
 
     fn leaf(&self, leaf: &[Reference], room: &mut Room<'_>) -> Child {

@@ -49,9 +49,7 @@ impl Bvh {
                 bounds: Bounds3::EMPTY,
             };
         }
-        let (mut references, bounds, tree) = build::build(references, &positions);
-        // SAFETY: the builder leaves what leaves name initialised.
-        unsafe { layout::lay_out(&tree, bounds, references.spare_capacity_mut(), &positions) }
+        build::build(references, &positions)
     }
 
     /// A box around everything.

@@ -230,14 +230,17 @@ impl<'a> Still<'a> {
         still
     }
 
-    /// Makes those of some numbers, of which none is left out.
+    /// Which member holds the primitive of a number among all: none before the first.
+    fn member(&self, number: usize) -> Option<usize> {
+        self.members.partition_point(|(first, _)| *first <= number).checked_sub(1)
+    }
+
+    /// Makes those of some numbers among all, of which none is left out.
     fn make(&self, range: Range<usize>, to: &mut Vec<Reference>) {
-        let reference =
-            |bounds: Bounds3, target| Reference::new(padded(bounds, bounds.diagonal().max_element()), target);
         let placements = self.placements.len();
         let placed = &self.placements[range.start.min(placements)..range.end.min(placements)];
         to.extend(placed.iter().map(|(bounds, index)| reference(*bounds, Target::Placement(*index))));
-        let from = self.members.partition_point(|(first, _)| *first <= range.start).saturating_sub(1);
+        let from = self.member(range.start).unwrap_or(0);
         for &(first, geometry) in self.members[from..].iter().take_while(|(first, _)| *first < range.end) {
             let Geometry { shape, masked, .. } = &self.geometries[geometry];
             let id = |index: usize| LeafPrimitive::new(geometry as u32, index as u32, *masked);
@@ -251,6 +254,11 @@ impl<'a> Still<'a> {
             }
         }
     }
+}
+
+/// To what is in a box.
+fn reference(bounds: Bounds3, target: Target) -> Reference {
+    Reference::new(padded(bounds, bounds.diagonal().max_element()), target)
 }
 
 impl References for Still<'_> {
@@ -267,6 +275,39 @@ impl References for Still<'_> {
             self.make(start + skipped..end + skipped, room);
             (start, skipped) = (end, skipped + 1);
         }
+    }
+
+    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+        room.clear();
+        // Numbers of what lies side by side in one geometry, from its index `from`: most come from where the last was.
+        let (mut run, mut from, mut geometry) = (0..0, 0, 0);
+        room.extend(numbers.iter().map(|&number| {
+            let number = number as usize;
+            if !run.contains(&number) {
+                let skipped = self.left_out.partition_point(|&before| before as usize <= number);
+                let Some(member) = self.member(number + skipped) else {
+                    let (bounds, index) = self.placements[number];
+                    return reference(bounds, Target::Placement(index));
+                };
+                let first;
+                (first, geometry) = self.members[member];
+                let left_out = |i: usize| self.left_out.get(i).map(|&before| before as usize);
+                let start =
+                    (first - skipped.min(first)).max(skipped.checked_sub(1).and_then(left_out).unwrap_or(0));
+                let end = first + self.geometries[geometry].shape.len() - skipped;
+                run = start..end.min(left_out(skipped).unwrap_or(end));
+                from = start + skipped - first;
+            }
+            let (Geometry { shape, masked, .. }, index) =
+                (&self.geometries[geometry], number - run.start + from);
+            let id = LeafPrimitive::new(geometry as u32, index as u32, *masked);
+            match shape {
+                Shape::Triangles(mesh) => {
+                    reference(Bounds3::around(mesh.positions(index)), Target::Triangle(id))
+                }
+                _ => reference(shape.primitive(index).bounds(), Target::Shape(id)),
+            }
+        }));
     }
 }
 
@@ -320,6 +361,10 @@ mod tests {
         assert_eq!(still.len(), want.len());
         assert_eq!(still.left_out.len(), 1 + 7 * 2 + 3 + 3);
         let mut room = Vec::new();
+        let numbers: Vec<u32> = (0..want.len() as u32).map(|i| i * 29 % want.len() as u32).collect();
+        still.choose(&numbers, &mut room);
+        let chosen: Vec<Target> = room.iter().map(Reference::target).collect();
+        assert_eq!(chosen, numbers.iter().map(|&number| want[number as usize]).collect::<Vec<_>>());
         for start in 0..=want.len() {
             for end in start..=want.len() {
                 still.read(start..end, &mut room);

@@ -28,9 +28,10 @@ enum Content {
 
 /// The tree over a range.
 pub(super) fn grow(range: Range<'_>) -> Bulk {
+    let mut bulk = Bulk { first: range.first(), len: range.len(), ..Bulk::default() };
     let mut binary = Binary::default();
     let root = binary.grow(range, 0);
-    let mut bulk = Bulk { nodes: Vec::new(), counts: binary.counts };
+    bulk.counts = binary.counts;
     binary.collapse(root, &mut bulk);
     bulk.counts.nodes = bulk.nodes.len();
     bulk
@@ -206,7 +207,7 @@ mod tests {
             let mut tree = Random { binary: Binary::default(), rng: Rng::new(seed), areas: BTreeMap::new() };
             let leaves = 2 + seed as u32 % 17;
             let root = tree.grow(0, leaves);
-            let mut bulk = Bulk { nodes: Vec::new(), counts: Counts::default() };
+            let mut bulk = Bulk::default();
             tree.binary.collapse(root, &mut bulk);
             let (mut nodes, mut cost) = (bulk.nodes.iter(), 0.0);
             assert_eq!(tree.read(&mut nodes, 0, &mut cost), leaves);

@@ -1,8 +1,7 @@
-//! Many references at once: they are counted in the cells of a grid, the upper tree is grown over the cells, and they are sorted into its leaves in one
+//! Many references at once: they are counted in the cells of a grid, the upper tree is grown over the cells, and their numbers are sorted into its leaves in one
 //! go (after Ganestam, Barringer, Doggett and Akenine-Möller 2015). Whatever the number of threads, the result is the same.
 
 use super::{
-    MaybeUninit,
     bins::{self, Item},
     hull::Hull,
     pair::Pair,
@@ -11,7 +10,7 @@ use super::{
 };
 use crate::bvh::traverse::Level;
 use rayon::prelude::*;
-use std::ops::Range;
+use std::{mem::MaybeUninit, ops::Range};
 
 /// References of a chunk at least, and how many chunks there are at most.
 const CHUNK: usize = 1 << 14;
@@ -119,14 +118,12 @@ impl Cells {
     }
 }
 
-/// Sorts all references into `to`, in the order of the leaves of the tree that is returned. `None`, and nothing is sorted, where the doubled `middles`
-/// coincide.
+/// The numbers of all references in the order of the leaves of the upper tree, and this. `None` where the doubled `middles` coincide.
 pub(super) fn sort(
     level: Level,
     references: &(impl References + ?Sized),
     middles: &Hull,
-    to: &mut [MaybeUninit<Reference>],
-) -> Option<Box<Top>> {
+) -> Option<(Vec<u32>, Box<Top>)> {
     let grid = Grid::new(middles, references.len());
     let chunk = references.len().div_ceil(CHUNKS).max(CHUNK);
     let starts = (0..references.len()).step_by(chunk);
@@ -185,7 +182,8 @@ pub(super) fn sort(
         })
         .collect();
     let mut rooms: Vec<Vec<_>> = counts.iter().map(|_| Vec::with_capacity(leaves as usize)).collect();
-    let mut rest = to;
+    let mut numbers = vec![0; references.len()];
+    let mut rest = &mut numbers[..];
     for leaf in 0..leaves as usize {
         for (counts, rooms) in counts.iter().zip(&mut rooms) {
             rooms.push(
@@ -194,14 +192,14 @@ pub(super) fn sort(
         }
     }
     chunks.into_par_iter().zip(rooms).for_each(|(chunk, mut rooms)| {
-        for_blocks(references, chunk, |_, block| {
-            for reference in block {
+        for_blocks(references, chunk, |start, block| {
+            for (i, reference) in block.iter().enumerate() {
                 let room = &mut rooms[leaf_of[grid.cell(reference)] as usize];
-                room.next().expect("as much room as was counted").write(*reference);
+                *room.next().expect("as much room as was counted") = (start + i) as u32;
             }
         });
     });
-    Some(Box::new(top))
+    Some((numbers, Box::new(top)))
 }
 
 /// The part of the upper tree over some cells.

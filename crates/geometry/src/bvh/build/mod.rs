@@ -17,16 +17,20 @@ pub(super) use pair::initialised;
 pub(crate) use reference::{Reference, Target, padded};
 pub(crate) use source::References;
 
-use super::{node::WIDTH, traverse::Level};
+use super::{
+    Bvh,
+    layout::{Sorted, lay_out},
+    node::{LeafPrimitive, WIDTH},
+    traverse::Level,
+};
 use pair::Pair;
 use presplit::{Cuts, presplit};
-use range::{Context, GRID, Range};
+use range::{Context, GRID, Items, Range};
 use rayon::prelude::*;
 use room::{Pool, Room};
 use source::{Cut, Summary, collect};
-use spatial::Positions;
 use std::mem::MaybeUninit;
-use tenfold_math::Bounds3;
+use tenfold_math::{Bounds3, Vec3};
 
 /// Subtrees of at most this many references are built by one thread.
 const ALONE: usize = 4096;
@@ -72,6 +76,10 @@ pub(super) struct Inner {
 pub(super) struct Bulk {
     pub(super) nodes: Vec<[Option<Word>; WIDTH]>,
     pub(super) counts: Counts,
+    /// Index of the first reference.
+    pub(super) first: usize,
+    /// How many there are.
+    pub(super) len: usize,
 }
 
 /// A child of a node.
@@ -106,9 +114,11 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-/// Sorts references and builds a tree over them; there must be at least one. The spare room of the array that is returned holds them: those
-/// that leaves name are initialised, between which there are gaps where triangles were cut.
-pub(super) fn build(source: &impl References, positions: &Positions<'_>) -> (Vec<Reference>, Bounds3, Tree) {
+/// A hierarchy over references, of which there must be at least one.
+pub(super) fn build(
+    source: &impl References,
+    positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
+) -> Bvh {
     let summary = Summary::of(source);
     match presplit(source, &summary, positions) {
         Cuts::Before(parts) if parts.is_empty() => grow(source, &summary, 0, positions),
@@ -125,26 +135,29 @@ fn grow(
     source: &impl References,
     summary: &Summary,
     extra: usize,
-    positions: &Positions<'_>,
-) -> (Vec<Reference>, Bounds3, Tree) {
-    let (level, len) = (Level::detect(), source.len());
-    let mut home = Vec::new();
-    let mut top = None;
-    if len > GRID && extra == 0 {
-        // In small pages, which those that held a file and were freed serve for: it is read and written in order.
-        home = Vec::with_capacity(len);
-        top = grid::sort(level, source, &summary.middles, &mut home.spare_capacity_mut()[..len]);
-    }
-    if top.is_none() {
-        home = collect(source, extra);
-        home.clear();
-    }
+    positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
+) -> Bvh {
+    let (level, len, bounds) = (Level::detect(), source.len(), summary.bounds.bounds());
     let pool = Pool::default();
-    // SAFETY: the grid has sorted as many, or they were collected.
-    let references = unsafe { Pair::new(&mut home.spare_capacity_mut()[..len + extra], len) };
-    let range = Range::all(Context { level, positions, pool: &pool }, references, summary, top);
-    let (bounds, tree) = (range.bounds(), tree(range, 0));
-    (home, bounds, tree)
+    let context = Context { level, source, positions, pool: &pool };
+    if len > GRID
+        && extra == 0
+        && let Some((mut numbers, top)) = grid::sort(level, source, &summary.middles)
+    {
+        let tree = tree(Range::all(context, Items::Numbers(&mut numbers, top), summary), 0);
+        drop(pool);
+        // SAFETY: all are initialised.
+        return unsafe { lay_out(&tree, bounds, Sorted::Numbers(&numbers, source), positions) };
+    }
+    let mut home = collect(source, extra);
+    home.clear();
+    let home = &mut home.spare_capacity_mut()[..len + extra];
+    // SAFETY: as many were collected.
+    let references = unsafe { Pair::new(home, len) };
+    let tree = tree(Range::all(context, Items::References(references, None), summary), 0);
+    drop(pool);
+    // SAFETY: ranges leave what leaves name initialised.
+    unsafe { lay_out(&tree, bounds, Sorted::References(home), positions) }
 }
 
 /// A tree whose root is a node.

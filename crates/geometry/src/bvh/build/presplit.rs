@@ -1,7 +1,7 @@
 //! Cutting a few long slanted triangles before the tree is built, so that their boxes overlap less (Karras and Aila 2013, §4.2).
 
 use super::reference::{Reference, Target, padded};
-use super::source::{References, Summary, for_blocks};
+use super::source::{References, Summary, for_blocks, one};
 use crate::bvh::node::LeafPrimitive;
 use rayon::prelude::*;
 use tenfold_math::{Bounds3, Vec3, ops};
@@ -87,11 +87,6 @@ pub(super) fn presplit(
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync + ?Sized),
 ) -> Cuts {
     let n = references.len();
-    let one = |i: usize| {
-        let mut one = Vec::with_capacity(1);
-        references.read(i..i + 1, &mut one);
-        one[0]
-    };
     let corners = |r: &Reference| match r.target() {
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
@@ -114,7 +109,7 @@ pub(super) fn presplit(
         .collect();
     let sample = (0..n).step_by(n.div_ceil(SAMPLE));
     let (sum, count) = sample
-        .filter_map(|i| corners(&one(i)))
+        .filter_map(|i| corners(&one(references, i as u32)))
         .fold((0.0, 0), |(sum, count), p| (sum + f64::from(octree.priority(p)), count + 1));
     let mean = (sum / f64::from(count.max(1))) as f32;
     let scale = (1.0 / (OUTSTANDING * mean)).min(f32::MAX);
@@ -127,7 +122,7 @@ pub(super) fn presplit(
         let mut parts = Vec::new();
         for &(index, priority) in chunk {
             let cuts @ 1.. = cuts(priority, scale) else { continue };
-            let reference = one(index as usize);
+            let reference = one(references, index);
             if let Some(corners) = corners(&reference) {
                 let size = Bounds3::around(corners).diagonal().max_element();
                 octree.cut(&corners, cuts, &mut |b| {

@@ -48,6 +48,20 @@ impl Reference {
         Self(hull)
     }
 
+    /// The same with its number among all in place of its target's index: what kind of target it is can still be told, but not which.
+    #[inline(always)]
+    pub(super) fn with_number(&self, number: u32) -> Self {
+        let mut hull = self.0;
+        hull.0[INDEX] = f32::from_bits(number);
+        Self(hull)
+    }
+
+    /// What [`Reference::with_number`] has put in.
+    #[inline(always)]
+    pub(super) fn number(&self) -> u32 {
+        self.words()[1]
+    }
+
     /// The words of the target.
     #[inline(always)]
     fn words(&self) -> [u32; 2] {

@@ -1,6 +1,6 @@
 //! Room for sorting.
 
-use super::reference::Reference;
+use super::{pair::Pair, reference::Reference, source::References};
 use crate::bvh::with_capacity;
 use std::{
     mem::MaybeUninit,
@@ -11,15 +11,15 @@ use std::{
 #[derive(Default)]
 pub(super) struct Pool(Mutex<Vec<Vec<Reference>>>);
 
-/// A buffer that is taken when it is needed, and goes back to the pool.
+/// Two buffers that are taken when they are needed, and go back to the pool.
 pub(super) struct Room<'a> {
     pool: &'a Pool,
-    buffer: Vec<Reference>,
+    buffers: [Vec<Reference>; 2],
 }
 
 impl Pool {
     pub(super) fn room(&self) -> Room<'_> {
-        Room { pool: self, buffer: Vec::new() }
+        Room { pool: self, buffers: [const { Vec::new() }; 2] }
     }
 
     fn buffers(&self) -> std::sync::MutexGuard<'_, Vec<Vec<Reference>>> {
@@ -30,18 +30,38 @@ impl Pool {
 impl Room<'_> {
     /// Room for `n` references.
     pub(super) fn take(&mut self, n: usize) -> &mut [MaybeUninit<Reference>] {
-        self.buffer = self.pool.buffers().pop().unwrap_or_default();
-        if self.buffer.capacity() < n {
-            self.buffer = with_capacity(n);
-        }
-        &mut self.buffer.spare_capacity_mut()[..n]
+        let [buffer, _] = &mut self.buffers;
+        take(self.pool, buffer, n);
+        &mut buffer.spare_capacity_mut()[..n]
+    }
+
+    /// The references of some numbers, with these, and room for as many.
+    pub(super) fn make(&mut self, source: &dyn References, numbers: &[u32]) -> Pair<'_, Reference> {
+        let n = numbers.len();
+        let [room, made] = &mut self.buffers;
+        take(self.pool, room, n);
+        take(self.pool, made, n);
+        source.choose(numbers, made);
+        assert_eq!(made.len(), n);
+        made.iter_mut().zip(numbers).for_each(|(made, &number)| *made = made.with_number(number));
+        made.clear();
+        // SAFETY: they were made.
+        let mut pair = unsafe { Pair::new(&mut made.spare_capacity_mut()[..n], n) };
+        pair.furnish(|_| &mut room.spare_capacity_mut()[..n]);
+        pair
+    }
+}
+
+fn take(pool: &Pool, buffer: &mut Vec<Reference>, n: usize) {
+    *buffer = pool.buffers().pop().unwrap_or_default();
+    if buffer.capacity() < n {
+        *buffer = with_capacity(n);
     }
 }
 
 impl Drop for Room<'_> {
     fn drop(&mut self) {
-        if self.buffer.capacity() > 0 {
-            self.pool.buffers().push(std::mem::take(&mut self.buffer));
-        }
+        let taken = self.buffers.iter_mut().filter(|buffer| buffer.capacity() > 0);
+        taken.for_each(|buffer| self.pool.buffers().push(std::mem::take(buffer)));
     }
 }

@@ -15,6 +15,16 @@ pub(crate) trait References: Sync {
 
     /// Makes those of some numbers: the content of `room`.
     fn read(&self, range: Range<usize>, room: &mut Vec<Reference>);
+
+    /// Makes some that lie anywhere: the content of `room`.
+    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>);
+}
+
+/// The reference of a number.
+pub(super) fn one(source: &(impl References + ?Sized), number: u32) -> Reference {
+    let mut one = Vec::with_capacity(1);
+    source.choose(&[number], &mut one);
+    one[0]
 }
 
 impl References for [Reference] {
@@ -25,6 +35,32 @@ impl References for [Reference] {
     fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
         room.clear();
         room.extend_from_slice(&self[range]);
+    }
+
+    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+        room.clear();
+        room.extend(numbers.iter().map(|&number| self[number as usize]));
+    }
+}
+
+/// Some of all references, in an order of their own.
+pub(super) struct Chosen<'a> {
+    pub(super) all: &'a dyn References,
+    pub(super) numbers: &'a [u32],
+}
+
+impl References for Chosen<'_> {
+    fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
+        self.all.choose(&self.numbers[range], room);
+    }
+
+    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+        let numbers: Vec<u32> = numbers.iter().map(|&number| self.numbers[number as usize]).collect();
+        self.all.choose(&numbers, room);
     }
 }
 
@@ -64,6 +100,33 @@ impl<S: References> References for Cut<'_, S> {
         cut.take_while(|(number, _)| *number < range.end)
             .for_each(|(number, part)| room[number - range.start] = *part);
         room.extend_from_slice(&self.more[range.start.max(n) - n..range.end.max(n) - n]);
+    }
+
+    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+        let n = self.whole.len() as u32;
+        if numbers.iter().all(|&number| number < n) {
+            self.whole.choose(numbers, room);
+        } else {
+            // Other parts take the places of the last that is whole.
+            let whole: Vec<u32> = numbers.iter().map(|&number| number.min(n - 1)).collect();
+            self.whole.choose(&whole, room);
+        }
+        // Numbers of which none is cut: the next is mostly one of them, too.
+        let mut uncut = 0..0;
+        for (&number, reference) in numbers.iter().zip(room) {
+            if uncut.contains(&number) {
+                continue;
+            }
+            let next = self.instead.partition_point(|(cut, _)| *cut < number);
+            match (number.checked_sub(n), self.instead.get(next)) {
+                (Some(more), _) => *reference = self.more[more as usize],
+                (None, Some((cut, part))) if *cut == number => *reference = *part,
+                (None, after) => {
+                    let before = next.checked_sub(1).map_or(0, |before| self.instead[before].0 + 1);
+                    uncut = before..after.map_or(n, |(cut, _)| *cut);
+                }
+            }
+        }
     }
 }
 
@@ -150,6 +213,9 @@ mod tests {
             fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
                 self.0[..].read(range, room);
             }
+            fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+                self.0[..].choose(numbers, room);
+            }
         }
         let whole = Whole((0..10).map(|i| reference(i as f32, i)).collect());
         let parts = [(2, 2.25), (2, 2.5), (2, 2.75), (3, 3.5), (9, 9.25), (9, 9.5)];
@@ -167,5 +233,14 @@ mod tests {
             }
         }
         assert_eq!(places(&collect(&cut, 5)), want);
+        let numbers = [12, 0, 2, 9, 4, 3, 10];
+        let chosen = Chosen { all: &cut, numbers: &numbers };
+        for (start, end) in [(0, 7), (1, 4), (3, 3)] {
+            chosen.read(start..end, &mut room);
+            let want: Vec<f32> = numbers[start..end].iter().map(|&number| want[number as usize]).collect();
+            assert_eq!(places(&room), want);
+        }
+        chosen.choose(&[1, 0, 6], &mut room);
+        assert_eq!(places(&room), [want[0], want[12], want[10]]);
     }
 }
