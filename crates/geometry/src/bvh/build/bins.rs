@@ -100,36 +100,35 @@ impl Histogram {
     /// The cheapest plane; `None` where all middles coincide.
     #[inline(always)]
     fn best<V: Vector>(&self, bins: Bins) -> Option<(Split, [Hull; 2], f32)> {
-        let mut best: Option<(Split, f32)> = None;
+        // The lowest of costs that are not negative is that of the lowest bits, behind which the axis and the bin fit: no branches, which could not be
+        // foretold. Where a half holds nothing its cost is no number, and its bits are higher than all others.
+        let mut best = u64::MAX;
         for axis in 0..3 {
             if bins.scale.0[axis] == 0.0 {
                 continue;
             }
             let (hulls, counts) = (&self.hulls[axis], &self.counts[axis]);
-            let mut high_cost = [f32::INFINITY; BINS];
+            let mut high_cost = [0.0; BINS];
             let (mut high, mut n) = (V::splat(f32::INFINITY), 0);
             for i in (1..bins.count).rev() {
                 high = high.min(hulls[i].load());
                 n += counts[i];
-                if n > 0 {
-                    high_cost[i] = cost(Hull::store(high), n);
-                }
+                high_cost[i] = cost(Hull::store(high), n);
             }
             let (mut low, mut n) = (V::splat(f32::INFINITY), 0);
             for i in 1..bins.count {
                 low = low.min(hulls[i - 1].load());
                 n += counts[i - 1];
-                // A half with nothing in it costs infinitely much.
-                if n == 0 || high_cost[i] == f32::INFINITY {
-                    continue;
-                }
-                let cost = cost(Hull::store(low), n) + high_cost[i];
-                if best.is_none_or(|(_, b)| cost < b) {
-                    best = Some((Split { bins, axis, bin: i }, cost));
-                }
+                // Nothing may be negative here, but zero.
+                let cost = cost(Hull::store(low), n) + high_cost[i] + 0.0;
+                best = best.min(u64::from(cost.to_bits()) << 32 | (axis << 8 | i) as u64);
             }
         }
-        let (split, cost) = best?;
+        let cost = f32::from_bits((best >> 32) as u32);
+        let split = Split { bins, axis: (best >> 8 & 3) as usize, bin: (best & 0xff) as usize };
+        if !cost.is_finite() {
+            return None;
+        }
         let union = |hulls: &[Hull]| {
             Hull::store(hulls.iter().fold(V::splat(f32::INFINITY), |union, hull| union.min(hull.load())))
         };
