@@ -124,7 +124,7 @@ pub(super) fn build(
         Cuts::Before(parts) if parts.is_empty() => grow(source, &summary, 0, positions),
         Cuts::Before(parts) => {
             let cut = Cut::new(source, parts);
-            grow(&cut, &Summary::of(&cut), 0, positions)
+            grow(&cut, &cut.summary(&summary), 0, positions)
         }
         Cuts::Meanwhile(extra) => grow(source, &summary, extra, positions),
     }
@@ -137,12 +137,12 @@ fn grow(
     extra: usize,
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) -> Bvh {
-    let (level, len, bounds) = (Level::detect(), source.len(), summary.bounds.bounds());
+    let (level, len, bounds) = (Level::detect(), source.len(), summary.all.bounds.bounds());
     let pool = Pool::default();
     let context = Context { level, source, positions, pool: &pool };
     if len > GRID
         && extra == 0
-        && let Some((mut numbers, top)) = grid::sort(level, source, &summary.middles)
+        && let Some((mut numbers, top)) = grid::sort(level, source, &summary.all.middles)
     {
         let tree = tree(Range::all(context, Items::Numbers(&mut numbers, top), summary), 0);
         drop(pool);

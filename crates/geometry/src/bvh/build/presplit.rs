@@ -91,15 +91,16 @@ pub(super) fn presplit(
         Target::Triangle(id) => Some(positions(id)),
         _ => None,
     };
-    let bounds = summary.bounds.bounds();
+    let bounds = summary.all.bounds.bounds();
     let octree = Octree { origin: bounds.min, size: bounds.diagonal().max_element() };
     // Meshes of alike triangles have no large ones: looking at all corners would take long.
-    let large = LARGE * ((summary.sizes / n as f64) as f32).powi(2);
-    let large: Vec<(u32, f32)> = (0..n.div_ceil(CHUNK))
+    let large = LARGE * ((summary.all.sizes / n as f64) as f32).powi(2);
+    let large: Vec<(u32, f32)> = summary
+        .larger_than(large)
         .into_par_iter()
-        .flat_map_iter(|i| {
+        .flat_map_iter(|numbers| {
             let mut found = Vec::new();
-            for_blocks(references, CHUNK * i..n.min(CHUNK * (i + 1)), |start, block| {
+            for_blocks(references, numbers.start..n.min(numbers.end), |start, block| {
                 for (i, r) in block.iter().enumerate().filter(|(_, r)| r.hull().half_area() > large) {
                     found.push(((start + i) as u32, corners(r).map_or(0.0, |p| octree.priority(p))));
                 }

@@ -8,7 +8,7 @@ use super::{
     pair::Pair,
     reference::{Reference, Target},
     room::{Pool, Room},
-    source::{Chosen, References, Summary, one},
+    source::{Chosen, Look, References, Summary, one},
     spatial::{self, Positions},
 };
 use crate::bvh::{node::LANES, traverse::Level};
@@ -55,7 +55,7 @@ pub(super) enum Items<'a> {
 impl<'a> Range<'a> {
     /// All references.
     pub(super) fn all(context: Context<'a>, items: Items<'a>, summary: &Summary) -> Self {
-        let Summary { bounds, middles, .. } = *summary;
+        let Look { bounds, middles, .. } = summary.all;
         Self { context, items, first: 0, bounds, middles: Some(middles) }
     }
 
@@ -210,7 +210,7 @@ fn halves_of(context: Context<'_>, numbers: &mut [u32], top: Top) -> Option<[Box
         return top.halves;
     }
     let chosen = Chosen { all: context.source, numbers };
-    let (order, top) = grid::sort(context.level, &chosen, &Summary::of(&chosen).middles)?;
+    let (order, top) = grid::sort(context.level, &chosen, &Summary::of(&chosen).all.middles)?;
     let halves = top.halves?;
     let sorted: Vec<u32> = order.iter().map(|&i| numbers[i as usize]).collect();
     numbers.copy_from_slice(&sorted);

@@ -85,6 +85,15 @@ impl<'a, S: References> Cut<'a, S> {
         }
         Self { whole, instead, more }
     }
+
+    /// What is known where `whole` is known of what was cut: most blocks are as they were.
+    pub(super) fn summary(&self, whole: &Summary) -> Summary {
+        Summary::with(self, |range| {
+            let next = self.instead.partition_point(|(cut, _)| (*cut as usize) < range.start);
+            let is_cut = self.instead.get(next).is_some_and(|(cut, _)| (*cut as usize) < range.end);
+            (!is_cut && range.end <= self.whole.len()).then(|| whole.blocks[range.start / BLOCK])
+        })
+    }
 }
 
 impl<S: References> References for Cut<'_, S> {
@@ -161,35 +170,75 @@ pub(super) fn for_blocks(
 }
 
 /// What is known of references from one look at all of them.
-#[derive(Copy, Clone, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Summary {
+    /// Of everything.
+    pub(super) all: Look,
+    /// Of each block of numbers.
+    blocks: Vec<Look>,
+}
+
+/// What is seen of some references.
+#[derive(Copy, Clone, Debug)]
+pub(super) struct Look {
     pub(super) bounds: Hull,
     /// Around the doubled middles.
     pub(super) middles: Hull,
     /// The sum of the roots of half the areas.
     pub(super) sizes: f64,
+    /// The largest half area.
+    largest: f32,
+}
+
+impl Look {
+    const EMPTY: Self = Self { bounds: Hull::EMPTY, middles: Hull::EMPTY, sizes: 0.0, largest: 0.0 };
+
+    fn at(level: Level, references: &[Reference]) -> Self {
+        let [bounds, middles] = bins::around(level, references);
+        let (mut sizes, mut largest) = (0.0, 0.0);
+        for area in references.iter().map(|r| r.hull().half_area()) {
+            sizes += f64::from(area.sqrt());
+            largest = if area > largest { area } else { largest };
+        }
+        Self { bounds, middles, sizes, largest }
+    }
 }
 
 impl Summary {
-    const EMPTY: Self = Self { bounds: Hull::EMPTY, middles: Hull::EMPTY, sizes: 0.0 };
-
     pub(super) fn of(source: &(impl References + ?Sized)) -> Self {
+        Self::with(source, |_| None)
+    }
+
+    /// Looks at the blocks of which nothing is `known`.
+    fn with(
+        source: &(impl References + ?Sized),
+        known: impl Fn(Range<usize>) -> Option<Look> + Sync,
+    ) -> Self {
         let level = Level::detect();
-        let blocks: Vec<Self> = (0..source.len().div_ceil(BLOCK))
+        let blocks: Vec<Look> = (0..source.len().div_ceil(BLOCK))
             .into_par_iter()
             .map_init(Vec::new, |room, i| {
-                source.read(BLOCK * i..source.len().min(BLOCK * (i + 1)), room);
-                let [bounds, middles] = bins::around(level, room);
-                let sizes = room.iter().map(|r| f64::from(r.hull().half_area().sqrt())).sum();
-                Self { bounds, middles, sizes }
+                let range = BLOCK * i..source.len().min(BLOCK * (i + 1));
+                known(range.clone()).unwrap_or_else(|| {
+                    source.read(range, room);
+                    Look::at(level, room)
+                })
             })
             .collect();
         // Sums in a fixed order.
-        blocks.iter().fold(Self::EMPTY, |a, b| Self {
+        let all = blocks.iter().fold(Look::EMPTY, |a, b| Look {
             bounds: a.bounds.union(&b.bounds),
             middles: a.middles.union(&b.middles),
             sizes: a.sizes + b.sizes,
-        })
+            largest: a.largest.max(b.largest),
+        });
+        Self { all, blocks }
+    }
+
+    /// The numbers of blocks that hold something of more than half an area.
+    pub(super) fn larger_than(&self, area: f32) -> Vec<Range<usize>> {
+        let blocks = self.blocks.iter().enumerate().filter(|(_, look)| look.largest > area);
+        blocks.map(|(i, _)| BLOCK * i..BLOCK * (i + 1)).collect()
     }
 }
 
@@ -198,6 +247,44 @@ mod tests {
     use super::*;
     use crate::bvh::{build::Target, node::LeafPrimitive};
     use tenfold_math::{Bounds3, Vec3};
+    use tenfold_testkit::Rng;
+
+    struct Whole(Vec<Reference>);
+
+    impl References for Whole {
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+        fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
+            self.0[..].read(range, room);
+        }
+        fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
+            self.0[..].choose(numbers, room);
+        }
+    }
+
+    #[test]
+    fn what_is_known_of_blocks_that_are_cut_is_found_anew() {
+        let mut rng = Rng::new(3);
+        let mut reference = |i| {
+            let p = rng.vec3();
+            let bounds = Bounds3::around([p, p + 0.1 * rng.vec3()]);
+            Reference::new(bounds, Target::Triangle(LeafPrimitive::new(0, i, false)))
+        };
+        let n = 5 * BLOCK as u32 / 2;
+        let mut whole = Whole((0..n).map(&mut reference).collect());
+        // Alone the largest, and at the corners of all, until it is cut.
+        let middle = BLOCK + 7;
+        let target = whole.0[middle].target();
+        whole.0[middle] = Reference::new(Bounds3::around([Vec3::splat(-9.0), Vec3::splat(9.0)]), target);
+        let known = Summary::of(&whole);
+        assert!(matches!(&known.larger_than(1.0)[..], [one] if *one == (BLOCK..2 * BLOCK)));
+        let parts = [(middle as u32, reference(n)), (middle as u32, reference(n)), (n - 1, reference(n))];
+        let cut = Cut::new(&whole, parts.to_vec());
+        let (found, want) = (cut.summary(&known), Summary::of(&cut));
+        assert_eq!(format!("{found:?}"), format!("{want:?}"));
+        assert!(found.larger_than(1.0).is_empty() && found.all.bounds.bounds().min.min_element() >= 0.0);
+    }
 
     #[test]
     fn parts_take_the_places_of_what_is_cut() {
@@ -205,18 +292,6 @@ mod tests {
             let target = Target::Triangle(LeafPrimitive::new(0, i, false));
             Reference::new(Bounds3::around([Vec3::splat(x)]), target)
         };
-        struct Whole(Vec<Reference>);
-        impl References for Whole {
-            fn len(&self) -> usize {
-                self.0.len()
-            }
-            fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
-                self.0[..].read(range, room);
-            }
-            fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
-                self.0[..].choose(numbers, room);
-            }
-        }
         let whole = Whole((0..10).map(|i| reference(i as f32, i)).collect());
         let parts = [(2, 2.25), (2, 2.5), (2, 2.75), (3, 3.5), (9, 9.25), (9, 9.5)];
         let cut = Cut::new(&whole, parts.map(|(i, x)| (i, reference(x, i))).to_vec());
