@@ -129,14 +129,16 @@ def count_triangles(args):
 
 def count_lights(args):
     """The same sum of light from ever more lamps."""
-    rows, few = [], {}
-    for count in (10, 1000, 100_000):
-        for one in (series := measure.interleaved(openers(args, meshes.confetti_scene(count)), args.spp, args.runs)):
-            few.setdefault(one.name, one)
-            rows.append({"lights": count, "renderer": one.name, "µs a sample": 1e6 / one.rate,
-                         "relvar": one.relvar, "cost": one.cost, "time / time of 10": one.time / few[one.name].time,
-                         "cost / cost of 10": one.cost / few[one.name].cost, "mean / tenfold's": one.mean / series[0].mean})
-        table(rows[-len(series):])
+    rows = []
+    for below, scene in (("a floor", meshes.confetti_scene), ("a stone of 10⁶ triangles", meshes.lit_stone_scene)):
+        few = {}
+        for count in (10, 1000, 100_000):
+            for one in (series := measure.interleaved(openers(args, scene(count)), args.spp, args.runs)):
+                few.setdefault(one.name, one)
+                rows.append({"lights": count, "over": below, "renderer": one.name, "µs a sample": 1e6 / one.rate,
+                             "relvar": one.relvar, "cost": one.cost, "time / time of 10": one.time / few[one.name].time,
+                             "cost / cost of 10": one.cost / few[one.name].cost, "mean / tenfold's": one.mean / series[0].mean})
+            table(rows[-len(series):])
     write(args, "lights", rows, f"{args.spp} samples a pixel, {args.threads} threads, medians of {args.runs} interleaved runs")
 
 

@@ -79,15 +79,17 @@ WorldBegin
 FLOOR = """Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
 Shape "trianglemesh" "point3 P" [ -8 0 -8  -8 0 8  8 0 8  8 0 -8 ] "integer indices" [ 0 1 2 0 2 3 ]
 """
+STONE_LOOK = "0 2.4 5.5  0 1.1 0"
+STONE_ITSELF = """Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
+Shape "plymesh" "string filename" "{ply}"
+"""
 STONE = """LightSource "infinite" "rgb L" [ 0.4 0.45 0.55 ]
 AttributeBegin
   AreaLightSource "diffuse" "rgb L" [ 20 18 15 ]
   Material "diffuse" "rgb reflectance" [ 0 0 0 ]
   Shape "trianglemesh" "point3 P" [ 2 5 1  4 5 1  4 5 3  2 5 3 ] "integer indices" [ 0 1 2 0 2 3 ]
 AttributeEnd
-Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
-Shape "plymesh" "string filename" "{ply}"
-"""
+""" + STONE_ITSELF
 CONFETTI = """AttributeBegin
   AreaLightSource "diffuse" "rgb L" [ 10 9 8 ]
   Material "diffuse" "rgb reflectance" [ 0 0 0 ]
@@ -98,13 +100,21 @@ AttributeEnd
 
 def stone_scene(triangles, width=160, height=120):
     """A scene with a stone under sky and a lamp; its files are kept for the next time."""
-    look = "0 2.4 5.5  0 1.1 0"
-    return scene(f"stone-{triangles}", f"-{width}x{height}", lambda: stone(triangles), look, STONE, width, height)
+    make = lambda: stone(triangles)
+    return scene(f"stone-{triangles}", f"-{width}x{height}", make, STONE_LOOK, STONE, width, height)
 
 
 def confetti_scene(count):
     """A scene with so many small lamps over a floor."""
     return scene(f"confetti-{count}", "", lambda: confetti(count), "0 4 8  0 0.8 0", CONFETTI, 160, 120)
+
+
+def lit_stone_scene(count):
+    """A stone of a million triangles below so many small lamps."""
+    stone_scene(1_000_000)
+    lamps = CONFETTI.replace("AttributeBegin", "AttributeBegin\n  Translate 0 1.5 0")
+    body = lamps + STONE_ITSELF.format(ply="stone-1000000.ply")
+    return scene(f"confetti-{count}", "-stone", lambda: confetti(count), STONE_LOOK, body, 160, 120)
 
 
 def scene(name, variant, mesh, look, body, width, height):
@@ -123,7 +133,7 @@ def inline_scene(triangles):
     MADE.mkdir(exist_ok=True)
     if not path.exists():
         positions, corners = stone(triangles)
-        head = HEAD.format(width=16, height=12, look="0 2.4 5.5  0 1.1 0")
+        head = HEAD.format(width=16, height=12, look=STONE_LOOK)
         lines = lambda rows, form: "\n".join(" ".join(form % v for v in row) for row in rows.tolist())
         mesh = f'"point3 P" [\n{lines(positions, "%.7g")}\n]\n"integer indices" [\n{lines(corners, "%d")}\n]\n'
         body = STONE.format(ply="").rsplit("Shape", 1)[0] + 'Shape "trianglemesh" ' + mesh
