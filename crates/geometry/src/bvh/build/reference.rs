@@ -105,6 +105,7 @@ impl Reference {
 /// The test shears vertices to the ray's axis: along each axis that errs by at most 5u of the distance travelled, which
 /// the slab test allows for, and by 4u of the distance from the vertex to the ray, here the size of the triangle's box and its
 /// slant (u = 2⁻²⁴).
+#[inline(always)]
 pub(crate) fn padded(b: Bounds3, size: f32) -> Bounds3 {
     let by = Vec3::splat(size * 1e-6);
     let ulp = f32::EPSILON;

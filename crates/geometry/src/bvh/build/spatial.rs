@@ -51,16 +51,20 @@ fn cut(corners: &[Vec3; 3], hull: &Hull, axis: usize, place: f32) -> [Option<Hul
             let s = (place - a[axis]) / (b[axis] - a[axis]);
             let mut p = a + s * (b - a);
             p[axis] = place;
-            sides = sides.map(|side| side.include(p));
+            sides = [sides[0].include(p), sides[1].include(p)];
         }
     }
     let size = Bounds3::around(*corners).diagonal().max_element();
     let hull = hull.bounds();
-    sides.map(|side| {
-        let side = padded(side, size);
-        let side = Bounds3 { min: side.min.max(hull.min), max: side.max.min(hull.max) };
-        (!side.is_empty()).then(|| Hull::new(side))
-    })
+    let [low, high] = sides;
+    [within(&hull, padded(low, size)), within(&hull, padded(high, size))]
+}
+
+/// What of a box is in another.
+#[inline(always)]
+fn within(hull: &Bounds3, side: Bounds3) -> Option<Hull> {
+    let side = Bounds3 { min: side.min.max(hull.min), max: side.max.min(hull.max) };
+    (!side.is_empty()).then(|| Hull::new(side))
 }
 
 /// A slab of space across an axis: what reaches into it, cut to fit, and how many references begin and end there.
