@@ -1,5 +1,6 @@
 //! What the tests of boxes and triangles want to know of rays.
 
+use super::stream::Streams;
 use crate::shape::{RayShear, fastest_axis, permuted};
 use tenfold_math::{Ray, Rays, Vec3, Vec3s, WIDTH, higher, vectorized};
 
@@ -55,6 +56,8 @@ pub struct RayCourses {
     pub(crate) origin: Vec3s,
     /// Room for vertices in the spaces of these rays, so that it needs not be cleared for every wave: [`World`](crate::World)s of few primitives use it.
     pub(crate) vertices: [Vec3s; MOST_VERTICES],
+    /// Room for what these rays come to, for the same reason.
+    pub(crate) streams: Streams,
 }
 
 impl Default for RayCourses {
@@ -65,6 +68,7 @@ impl Default for RayCourses {
             axis: [0; WIDTH],
             origin: Vec3s::ZERO,
             vertices: [Vec3s::ZERO; MOST_VERTICES],
+            streams: Streams::EMPTY,
         }
     }
 }

@@ -11,6 +11,7 @@ mod memory;
 mod node;
 mod simd;
 mod stack;
+mod stream;
 mod traverse;
 mod triangles;
 
@@ -32,6 +33,7 @@ pub(crate) struct Bvh {
     blocks: Vec<TriangleBlock>,
     shapes: Vec<LeafPrimitive>,
     bounds: Bounds3,
+    is_sparse: bool,
 }
 
 impl Bvh {
@@ -47,6 +49,7 @@ impl Bvh {
                 blocks: Vec::new(),
                 shapes: Vec::new(),
                 bounds: Bounds3::EMPTY,
+                is_sparse: false,
             };
         }
         build::build(references, &positions)
@@ -55,6 +58,11 @@ impl Bvh {
     /// A box around everything.
     pub(crate) fn bounds(&self) -> Bounds3 {
         self.bounds
+    }
+
+    /// Whether most rays pass most of the leaves that they come to.
+    pub(crate) fn is_sparse(&self) -> bool {
+        self.is_sparse
     }
 
     /// How many nodes there are.

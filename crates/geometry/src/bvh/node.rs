@@ -6,7 +6,7 @@ use tenfold_math::{Bounds3, Vec3};
 pub(super) const WIDTH: usize = 8;
 
 /// A node: the boxes of eight children, one row of eight floats for each of min x, max x, min y, max y, min z,
-/// max z, and one row of child references; a last row pads it to four cache lines. Floats are kept as bits so that a row can be chosen by
+/// max z, and one row of child references; the last row begins with a bit for each child that is a leaf, and fills four cache lines. Floats are kept as bits so that a row can be chosen by
 /// a masked index without a check.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(64))]
@@ -32,6 +32,7 @@ impl Node {
             self.rows[2 * axis + 1][slot] = bounds.max[axis].to_bits();
         }
         self.rows[6][slot] = child.0;
+        self.rows[7][0] |= u32::from(child.is_leaf()) << slot;
     }
 
     #[inline(always)]
@@ -42,6 +43,12 @@ impl Node {
     #[inline(always)]
     pub(super) fn children(&self) -> &[u32; WIDTH] {
         &self.rows[6]
+    }
+
+    /// A bit for each child that is a leaf.
+    #[inline(always)]
+    pub(super) fn leaves(&self) -> u32 {
+        self.rows[7][0]
     }
 }
 

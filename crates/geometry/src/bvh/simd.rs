@@ -42,6 +42,9 @@ pub(super) trait Simd {
     /// Puts the children whose bits are set in `mask` on the stack, the farthest first, without branches.
     fn push_all_sorted(stack: &mut Stack, mask: u32, near: Self::F8, children: &[u32; WIDTH]);
 
+    /// The children whose bits are set in `mask`, those of later slots first, and behind them anything.
+    fn compact(mask: u32, children: &[u32; WIDTH]) -> [u32; WIDTH];
+
     /// Puts the children whose bits are set in `mask` on the stack, those of later slots first, at no distance.
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]);
 }
@@ -94,11 +97,13 @@ impl Simd for Portable {
         keys[..n].iter().for_each(|&key| stack.push(key, child(key)));
     }
 
+    fn compact(mask: u32, children: &[u32; WIDTH]) -> [u32; WIDTH] {
+        SLOTS[mask as usize % SLOTS.len()].map(|slot| children[usize::from(slot) % WIDTH])
+    }
+
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
-        let slots = &SLOTS[mask as usize % SLOTS.len()];
-        slots[..mask.count_ones() as usize]
-            .iter()
-            .for_each(|&slot| stack.push(0, children[usize::from(slot) % WIDTH]));
+        let row = Self::compact(mask, children);
+        row[..mask.count_ones() as usize].iter().for_each(|&child| stack.push(0, child));
     }
 }
 
@@ -212,6 +217,14 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn compact(mask: u32, children: &[u32; WIDTH]) -> [u32; WIDTH] {
+            let mut row = [0; WIDTH];
+            // SAFETY: the machine has AVX2, or this type is not used; the row has the length of a vector.
+            unsafe { _mm256_storeu_si256(row.as_mut_ptr().cast(), compact(mask, children)) };
+            row
+        }
+
+        #[inline(always)]
         fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
             // SAFETY: the machine has AVX2, or this type is not used.
             unsafe { push(stack, mask, children) }
@@ -221,15 +234,20 @@ mod avx2 {
     #[inline]
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
     fn push(stack: &mut Stack, mask: u32, children: &[u32; WIDTH]) {
-        let slots = &SLOTS[mask as usize % SLOTS.len()];
         let [_, room] = stack.room();
-        // SAFETY: the arrays have the lengths of these vectors.
-        unsafe {
-            let slots = _mm256_cvtepu8_epi32(_mm_loadl_epi64(slots.as_ptr().cast()));
-            let row = _mm256_loadu_si256(children.as_ptr().cast());
-            _mm256_storeu_si256(room.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(row, slots));
-        }
+        // SAFETY: the room has the length of a vector.
+        unsafe { _mm256_storeu_si256(room.as_mut_ptr().cast(), compact(mask, children)) };
         stack.grow(mask.count_ones() as usize);
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn compact(mask: u32, children: &[u32; WIDTH]) -> __m256i {
+        let slots = &SLOTS[mask as usize % SLOTS.len()];
+        // SAFETY: the arrays have the lengths of these vectors.
+        let (slots, row) =
+            unsafe { (_mm_loadl_epi64(slots.as_ptr().cast()), _mm256_loadu_si256(children.as_ptr().cast())) };
+        _mm256_permutevar8x32_epi32(row, _mm256_cvtepu8_epi32(slots))
     }
 
     /// Sorts all lanes in descending order by a bitonic network (Batcher 1968), with 0 for those that are not in the mask. The nearest is

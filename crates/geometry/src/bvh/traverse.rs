@@ -128,9 +128,20 @@ impl Bvh {
 
     #[inline(always)]
     fn traverse_with<S: Simd, W: Visitor>(&self, ray: &impl Course, visitor: &mut W) -> bool {
-        let Some(root) = self.nodes.first() else { return false };
+        !self.nodes.is_empty() && self.follow::<S, W>(Child::ROOT, ray, visitor)
+    }
+
+    /// Follows a ray through all below `root`, a node. Returns whether the visitor said that it is over.
+    #[inline(always)]
+    pub(super) fn follow<S: Simd, W: Visitor>(
+        &self,
+        root: Child,
+        ray: &impl Course,
+        visitor: &mut W,
+    ) -> bool {
         let slabs = Slabs::new(ray);
-        let (mut mask, mut near) = slabs.intersect::<S::F8>(root, visitor.t_max());
+        let mut node = &self.nodes[root.index()];
+        let (mut mask, mut near) = slabs.intersect::<S::F8>(node, visitor.t_max());
         // Many rays miss everything: they should not pay for what follows.
         if mask == 0 {
             return false;
@@ -138,7 +149,6 @@ impl Bvh {
         let shear = Shear::<S::F8>::new(ray.shear());
         let mut stack = Stack::new();
         let large = self.nodes.len() >= LARGE;
-        let mut node = root;
         loop {
             let mut child = if mask == 0 {
                 Self::pop(&mut stack, visitor)

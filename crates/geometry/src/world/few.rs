@@ -227,7 +227,7 @@ vectorized! {
             let is_live = flags[i] & leads_somewhere(&rays.get(i), t_max[i]);
             found.t_max[i] = if is_live { t_max[i] } else { 0.0 };
         }
-        let RayCourses { inverse, shear, axis, origin, vertices: turned } = courses;
+        let RayCourses { inverse, shear, axis, origin, vertices: turned, .. } = courses;
         for run in &few.runs {
             let mut entered = [false; WIDTH];
             for i in 0..WIDTH {

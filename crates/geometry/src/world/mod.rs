@@ -86,7 +86,18 @@ pub struct WorldStats {
 /// Hierarchies of so many nodes are slow enough to load that going through them with several rays at once is worth what it takes.
 const INTERLEAVED_FROM: usize = 1 << 17;
 /// And with so many rays.
-const FEWEST_INTERLEAVED: usize = 4;
+const FEWEST_AT_ONCE: usize = 4;
+
+/// How rays in slots go through the hierarchy.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Company {
+    /// One after another.
+    Alone,
+    /// At once, each in order: where nodes are slow to load.
+    Interleaved,
+    /// At once, in no order: where most pass what they come to.
+    Streaming,
+}
 
 /// Everything that rays can hit.
 #[derive(Debug)]
@@ -94,8 +105,7 @@ pub struct World {
     geometries: Vec<Geometry>,
     hierarchies: Hierarchies,
     few: Option<Few>,
-    /// Whether several rays go through the hierarchy at once.
-    interleaved: bool,
+    company: Company,
     level: Level,
     bounds: Bounds3,
     stats: WorldStats,
@@ -110,9 +120,13 @@ impl World {
         let (hierarchies, stats) = Hierarchies::build(&desc)?;
         let bounds = hierarchies.top.bounds();
         let few = if desc.instances.is_empty() { Few::of(&desc.geometries) } else { None };
-        let interleaved = hierarchies.top.node_count() >= INTERLEAVED_FROM;
+        let company = match &hierarchies.top {
+            top if top.is_sparse() => Company::Streaming,
+            top if top.node_count() >= INTERLEAVED_FROM => Company::Interleaved,
+            _ => Company::Alone,
+        };
         let level = Level::detect();
-        Ok(Self { geometries: desc.geometries, hierarchies, few, interleaved, level, bounds, stats })
+        Ok(Self { geometries: desc.geometries, hierarchies, few, company, level, bounds, stats })
     }
 
     /// The same world without vector instructions in its hierarchies: it answers with the same bits.
@@ -125,7 +139,14 @@ impl World {
     /// The same world, whose rays in slots go through the hierarchy at once, however small it is: it answers with the same bits.
     #[must_use]
     pub fn interleaved(mut self) -> Self {
-        (self.few, self.interleaved) = (None, true);
+        (self.few, self.company) = (None, Company::Interleaved);
+        self
+    }
+
+    /// The same world, whose rays in slots go through the hierarchy at once and in no order, whatever is in it: it answers with the same bits.
+    #[must_use]
+    pub fn streaming(mut self) -> Self {
+        (self.few, self.company) = (None, Company::Streaming);
         self
     }
 
@@ -176,7 +197,7 @@ impl World {
         if let Some(few) = &self.few {
             return few.intersect(&self.geometries, slots, rays, courses, hits);
         }
-        if self.interleaves(slots) {
+        if self.takes_at_once(slots) {
             let t_max = [f32::INFINITY; WIDTH];
             return self
                 .query_slots::<false>(slots, rays, courses, &t_max, filter, |slot, hit| hits[slot] = hit);
@@ -206,7 +227,7 @@ impl World {
         if let Some(few) = &self.few {
             return few.occluded(&self.geometries, slots, rays, courses, t_max);
         }
-        if self.interleaves(slots) {
+        if self.takes_at_once(slots) {
             let mut occluded = Slots::NONE;
             self.query_slots::<true>(slots, rays, courses, t_max, filter, |slot, hit| {
                 occluded.insert_if(slot, hit.is_some());
@@ -236,8 +257,8 @@ impl World {
 
     /// Whether [`World::query_slots`] is the way for the rays in `slots`.
     #[inline]
-    fn interleaves(&self, slots: Slots) -> bool {
-        self.interleaved && slots.len() >= FEWEST_INTERLEAVED
+    fn takes_at_once(&self, slots: Slots) -> bool {
+        self.company != Company::Alone && slots.len() >= FEWEST_AT_ONCE
     }
 
     /// [`World::query`] for the rays in `slots`, whose courses are prepared, at once: `take` is told what each has found.
@@ -245,12 +266,12 @@ impl World {
         &self,
         slots: Slots,
         rays: &Rays,
-        courses: &RayCourses,
+        room: &mut RayCourses,
         t_max: &Floats,
         filter: impl Fn(usize, &Candidate<'_>) -> bool,
         mut take: impl FnMut(usize, Option<Hit>),
     ) {
-        let courses = from_fn(|slot| courses.of(slot, rays.get(slot)));
+        let courses = from_fn(|slot| room.of(slot, rays.get(slot)));
         let filters: [_; WIDTH] = from_fn(|slot| {
             let filter = &filter;
             move |candidate: &Candidate<'_>| filter(slot, candidate)
@@ -259,7 +280,13 @@ impl World {
             Search::<ANY, true, _>::new(self, courses[slot].ray(), t_max[slot], &filters[slot])
         });
         let leading = slots.keep(|slot| leads_somewhere(courses[slot].ray(), t_max[slot]));
-        self.hierarchies.top.traverse_slots(self.level, leading, &courses, &mut searches);
+        let Self { hierarchies: Hierarchies { top, .. }, level, .. } = self;
+        match self.company {
+            Company::Streaming => {
+                top.traverse_stream(*level, leading, &courses, &mut searches, &mut room.streams);
+            }
+            _ => top.traverse_slots(*level, leading, &courses, &mut searches),
+        }
         slots.for_each(|slot| take(slot, searches[slot].found()));
     }
 

@@ -127,7 +127,9 @@ fn rays_in_any_world_find_in_slots_what_they_find_alone() {
         let mut desc = random_scene(&mut rng, 4 + 2 * seed as usize);
         desc.geometries.iter_mut().for_each(|geometry| geometry.masked = rng.below(3) == 0);
         let build = || World::build(desc.clone()).unwrap();
-        for world in [build(), build().interleaved(), build().portable().interleaved()] {
+        let at_once = [build().interleaved(), build().streaming()];
+        let portable = [build().portable().interleaved(), build().portable().streaming()];
+        for world in [build()].into_iter().chain(at_once).chain(portable) {
             for _ in 0..100 {
                 let [hits, occluded] = compare(&world, &mut rng);
                 found = [found[0] + hits, found[1] + occluded];

@@ -37,7 +37,7 @@ impl Hull {
 
     /// Half the surface area; for what is not empty.
     #[inline(always)]
-    pub(super) fn half_area(&self) -> f32 {
+    pub(in crate::bvh) fn half_area(&self) -> f32 {
         let [x, y, z, _, a, b, c, _] = self.0;
         let (x, y, z) = (x + a, y + b, z + c);
         x * y + y * z + z * x

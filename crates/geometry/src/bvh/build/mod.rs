@@ -32,6 +32,8 @@ use source::{Cut, Summary, collect};
 use std::mem::MaybeUninit;
 use tenfold_math::{Bounds3, Vec3};
 
+/// Rays that would meet more boxes of primitives, on the average, hit something too soon to pass most.
+const MOST_MET: f64 = 3.0;
 /// Subtrees of at most this many references are built by one thread.
 const ALONE: usize = 4096;
 /// Nodes on the way from the root to any subtree of these, and halvings from there, at most.
@@ -120,14 +122,17 @@ pub(super) fn build(
     positions: &(impl Fn(LeafPrimitive) -> [Vec3; 3] + Sync),
 ) -> Bvh {
     let summary = Summary::of(source);
-    match presplit(source, &summary, positions) {
+    let mut bvh = match presplit(source, &summary, positions) {
         Cuts::Before(parts) if parts.is_empty() => grow(source, &summary, 0, positions),
         Cuts::Before(parts) => {
             let cut = Cut::new(source, parts);
             grow(&cut, &cut.summary(&summary), 0, positions)
         }
         Cuts::Meanwhile(extra) => grow(source, &summary, extra, positions),
-    }
+    };
+    // Of boxes a line through all meets as many, on the average, as their areas are larger than that of the box around all.
+    bvh.is_sparse &= summary.all.areas <= MOST_MET * f64::from(summary.all.bounds.half_area());
+    bvh
 }
 
 /// As [`build`]; splits of space may add `extra` references.

@@ -186,21 +186,25 @@ pub(super) struct Look {
     pub(super) middles: Hull,
     /// The sum of the roots of half the areas.
     pub(super) sizes: f64,
+    /// The sum of half the areas.
+    pub(super) areas: f64,
     /// The largest half area.
     largest: f32,
 }
 
 impl Look {
-    const EMPTY: Self = Self { bounds: Hull::EMPTY, middles: Hull::EMPTY, sizes: 0.0, largest: 0.0 };
+    const EMPTY: Self =
+        Self { bounds: Hull::EMPTY, middles: Hull::EMPTY, sizes: 0.0, areas: 0.0, largest: 0.0 };
 
     fn at(level: Level, references: &[Reference]) -> Self {
         let [bounds, middles] = bins::around(level, references);
-        let (mut sizes, mut largest) = (0.0, 0.0);
+        let (mut sizes, mut areas, mut largest) = (0.0, 0.0, 0.0);
         for area in references.iter().map(|r| r.hull().half_area()) {
             sizes += f64::from(area.sqrt());
+            areas += f64::from(area);
             largest = if area > largest { area } else { largest };
         }
-        Self { bounds, middles, sizes, largest }
+        Self { bounds, middles, sizes, areas, largest }
     }
 }
 
@@ -230,6 +234,7 @@ impl Summary {
             bounds: a.bounds.union(&b.bounds),
             middles: a.middles.union(&b.middles),
             sizes: a.sizes + b.sizes,
+            areas: a.areas + b.areas,
             largest: a.largest.max(b.largest),
         });
         Self { all, blocks }
