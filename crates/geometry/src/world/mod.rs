@@ -332,3 +332,39 @@ fn leads_somewhere(ray: &Ray, t_max: f32) -> bool {
     let is_finite = |v: Vec3| v.x.is_finite() & v.y.is_finite() & v.z.is_finite();
     is_finite(ray.direction) & is_finite(ray.origin) & ((x != 0.0) | (y != 0.0) | (z != 0.0)) & (t_max > 0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MeshParts, TriangleMesh};
+    use std::sync::Arc;
+    use tenfold_testkit::Rng;
+
+    /// So many triangles of a size, anywhere in the unit cube.
+    fn cloud(count: usize, size: f32) -> World {
+        let mut rng = Rng::new(5);
+        let positions = (0..count).flat_map(|_| {
+            let at = rng.vec3();
+            [at, at + size * rng.direction(), at + size * rng.direction()]
+        });
+        let parts = MeshParts {
+            positions: positions.collect(),
+            indices: (0..3 * count as u32).collect(),
+            ..MeshParts::default()
+        };
+        let shape =
+            Shape::Triangles(Arc::new(TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap()));
+        let geometry = Geometry { shape, motion: None, group: None, user: 0, masked: false };
+        let desc = WorldDesc { geometries: vec![geometry], shutter: [0.0, 1.0], ..WorldDesc::default() };
+        World::build(desc).unwrap()
+    }
+
+    #[test]
+    fn rays_stream_through_what_they_mostly_pass() {
+        assert_eq!(cloud(1000, 0.002).company, Company::Streaming);
+        // Larger ones fill their leaves.
+        assert_eq!(cloud(1000, 0.1).company, Company::Alone);
+        // So many are in the way of every ray.
+        assert_eq!(cloud(200_000, 0.006).company, Company::Alone);
+    }
+}

@@ -139,6 +139,23 @@ fn rays_in_any_world_find_in_slots_what_they_find_alone() {
     assert!(found.iter().all(|&n| n > 15_000), "{found:?}");
 }
 
+/// Large triangles anywhere: each ray comes to most nodes and leaves, which are more than wait at once.
+#[test]
+fn rays_that_come_to_very_much_find_in_slots_what_they_find_alone() {
+    let mut rng = Rng::new(3);
+    let shape = triangles(&mut rng, Transform::IDENTITY, 30_000, 1.5);
+    let desc = WorldDesc { geometries: vec![still(shape, 0)], shutter: [0.0, 1.0], ..WorldDesc::default() };
+    let build = || World::build(desc.clone()).unwrap().streaming();
+    let mut found = [0, 0];
+    for world in [build(), build().portable()] {
+        for _ in 0..20 {
+            let [hits, occluded] = compare(&world, &mut rng);
+            found = [found[0] + hits, found[1] + occluded];
+        }
+    }
+    assert!(found.iter().all(|&n| n > 150), "{found:?}");
+}
+
 /// Slivers whose edge functions all cancel in single precision: corners ±(1 + kδ, 1 + (k + 3)δ, 1), where δ is the distance of floats.
 #[test]
 fn slivers_that_look_flat_are_hit_in_slots_as_alone() {
