@@ -123,7 +123,7 @@ impl Clusters {
     // Unlike `clamp`, `max` turns what is not a number into 0.
     #[allow(clippy::manual_clamp)]
     #[inline(always)]
-    fn importance_in_lanes(&self, from: &ReferencePoint) -> [f32; LANES] {
+    pub(super) fn importance_in_lanes(&self, from: &ReferencePoint) -> [f32; LANES] {
         let (p, n) = (from.p, from.ns);
         let (on_surface, one_sided) = (n != Vec3::ZERO, from.one_sided);
         let mut importance = [0.0; LANES];

@@ -3,6 +3,7 @@
 mod bounds;
 mod clusters;
 mod cone;
+mod descent;
 mod split;
 mod tree;
 

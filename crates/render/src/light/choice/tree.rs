@@ -4,9 +4,10 @@
 
 use super::bounds::LightBounds;
 use super::clusters::{Clusters, LANES};
+use super::descent::{Descents, Weights, remainder};
 use super::split::split;
 use tenfold_geometry::{ReferencePoint, ReferencePoints};
-use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots, prefetch};
+use tenfold_math::{Floats, Slots, prefetch};
 
 /// Depth from which groups are halved, so that no light is very deep.
 const HALVE_FROM: usize = 10;
@@ -16,8 +17,8 @@ pub(crate) const MAX_LIGHTS: usize = 1 << 27;
 /// Up to [`LANES`] clusters and what is in them: a node each, or a light. Three cache lines.
 #[derive(Copy, Clone, Debug)]
 #[repr(C, align(64))]
-struct Node {
-    clusters: Clusters,
+pub(super) struct Node {
+    pub(super) clusters: Clusters,
     /// Index of a node, or with the bit `LIGHT` of a light.
     links: [u32; LANES],
 }
@@ -169,21 +170,24 @@ impl LightTree {
             slots.for_each(|slot| take(slot, TreeSample { light, pmf: 1.0 }));
             return;
         }
-        let mut descents = u.map(|u| Descent { node: 0, u, pmf: 1.0 });
+        if self.nodes.is_empty() {
+            return;
+        }
+        let (mut descents, mut weights) = (Descents::new(u), Weights::ZERO);
         let mut under_way = slots;
         while !under_way.is_empty() {
-            under_way = under_way.keep(|slot| match self.descend(&mut descents[slot], &from.get(slot)) {
-                Some(None) => {
-                    if let Some(node) = self.nodes.get(descents[slot].node as usize) {
-                        prefetch(node);
-                    }
-                    true
+            weights.weigh(&self.nodes, &descents.node, under_way, from);
+            descents.choose(&weights);
+            under_way = under_way.keep(|slot| {
+                let Some(lane) = descents.lane(slot, &weights) else { return false };
+                let link = self.nodes[descents.node[slot] as usize].links[lane];
+                if link & LIGHT != 0 {
+                    take(slot, TreeSample { light: link & !LIGHT, pmf: descents.pmf[slot] });
+                    return false;
                 }
-                Some(Some(sample)) => {
-                    take(slot, sample);
-                    false
-                }
-                None => false,
+                descents.node[slot] = link;
+                prefetch(&self.nodes[link as usize]);
+                true
             });
         }
     }
@@ -208,7 +212,7 @@ impl LightTree {
         if link & LIGHT != 0 {
             return Some(Some(TreeSample { light: link & !LIGHT, pmf }));
         }
-        let u = ((x - (sums[lane] - weight)) / weight).clamp(0.0, ONE_MINUS_EPSILON);
+        let u = remainder(x, sums[lane], weight);
         *descent = Descent { node: link, u, pmf };
         Some(None)
     }
