@@ -10,6 +10,10 @@ use tenfold_sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, s
 /// Solid angles outside this range are sampled by area: directions to smaller triangles lose their digits, and
 /// larger ones nearly fill the hemisphere, where sampling the scattering is better (pbrt's bounds).
 const SPHERICAL_RANGE: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
+/// From more than so many times the length of its longer edge at a vertex, a triangle looks smaller than that: it has no more than half of the square of that length,
+/// and no point of it is nearer than the vertex by more than that length.
+const FAR: f32 = 43.0;
+const _: () = assert!(1.02 < 2.0 * *SPHERICAL_RANGE.start() * (FAR - 1.0) * (FAR - 1.0));
 
 /// A triangle of a mesh.
 #[derive(Copy, Clone, Debug)]
@@ -176,8 +180,12 @@ impl<'a> Triangle<'a> {
     }
 
     fn seen_from(&self, reference: &ReferencePoint) -> Option<SphericalTriangle> {
-        SphericalTriangle::new(reference.p, self.positions())
-            .filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()))
+        let [a, b, c] = self.positions();
+        let edge2 = b.distance_squared(a).max(c.distance_squared(a));
+        if reference.p.distance_squared(a) > FAR * FAR * edge2 {
+            return None;
+        }
+        SphericalTriangle::new(reference.p, [a, b, c]).filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()))
     }
 
     pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
