@@ -482,3 +482,32 @@ fn is_in_front(t: f32, v: [Vec3; 3], z: [f32; 3], inv_det: f32) -> bool {
     let range = higher(z[0], higher(z[1], z[2])) - nearest;
     (nearest > delta_t) | (t > delta_t + 3.0 * delta_e * range * inv_det.abs())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::MeshParts;
+    use tenfold_math::Transform;
+    use tenfold_testkit::Rng;
+
+    #[test]
+    fn what_is_far_looks_small() {
+        let mut rng = Rng::new(11);
+        let mut small = 0;
+        for _ in 0..2000 {
+            let positions = (0..3).map(|_| rng.vec3()).collect::<Vec<_>>();
+            let parts = MeshParts { positions, indices: vec![0, 1, 2], ..MeshParts::default() };
+            let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+            let triangle = Triangle { mesh: &mesh, index: 0 };
+            let [a, b, c] = triangle.positions();
+            let edge = b.distance(a).max(c.distance(a));
+            // Some of these are nearer, and some that are may look large enough.
+            let from = a + rng.direction() * edge * FAR * (0.1 + 1.1 * rng.f32());
+            let exact = SphericalTriangle::new(from, [a, b, c]);
+            let seen = exact.filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()));
+            assert_eq!(triangle.seen_from(&ReferencePoint::free(from, 0.0)), seen);
+            small += u32::from(seen.is_none());
+        }
+        assert!((500..1900).contains(&small), "{small}");
+    }
+}

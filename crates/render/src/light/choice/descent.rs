@@ -106,8 +106,8 @@ vectorized! {
         for lane in 0..LANES {
             for i in 0..WIDTH {
                 total[i] += weights.0[lane][i];
-                sums[lane][i] = total[i];
             }
+            sums[lane] = total;
         }
         for i in 0..WIDTH {
             let x = descents.u[i] * total[i];
