@@ -27,22 +27,6 @@ pub(super) fn one(source: &(impl References + ?Sized), number: u32) -> Reference
     one[0]
 }
 
-impl References for [Reference] {
-    fn len(&self) -> usize {
-        self.len()
-    }
-
-    fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
-        room.clear();
-        room.extend_from_slice(&self[range]);
-    }
-
-    fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
-        room.clear();
-        room.extend(numbers.iter().map(|&number| self[number as usize]));
-    }
-}
-
 /// Some of all references, in an order of their own.
 pub(super) struct Chosen<'a> {
     pub(super) all: &'a dyn References,
@@ -261,10 +245,12 @@ mod tests {
             self.0.len()
         }
         fn read(&self, range: Range<usize>, room: &mut Vec<Reference>) {
-            self.0[..].read(range, room);
+            room.clear();
+            room.extend_from_slice(&self.0[range]);
         }
         fn choose(&self, numbers: &[u32], room: &mut Vec<Reference>) {
-            self.0[..].choose(numbers, room);
+            room.clear();
+            room.extend(numbers.iter().map(|&number| self.0[number as usize]));
         }
     }
 

@@ -43,28 +43,18 @@ vectorized! {
 /// Choices under way.
 pub(super) struct Descents {
     pub(super) node: [u32; WIDTH],
-    /// What is left of the numbers that choose.
+    /// What is left of the numbers that choose; as it was where rounding leaves the choice open.
     u: Floats,
     /// The probabilities of having come here.
     pub(super) pmf: Floats,
     /// The lanes that were chosen; [`LANES`] where rounding leaves the choice to the last that may be.
     lane: [u32; WIDTH],
-    /// What was to be chosen by: a part of `total`, which is the sum of all weights.
-    x: Floats,
-    total: Floats,
 }
 
 impl Descents {
     /// At the root.
     pub(super) fn new(u: &Floats) -> Self {
-        Self {
-            node: [0; WIDTH],
-            u: *u,
-            pmf: [1.0; WIDTH],
-            lane: [0; WIDTH],
-            x: [0.0; WIDTH],
-            total: [0.0; WIDTH],
-        }
+        Self { node: [0; WIDTH], u: *u, pmf: [1.0; WIDTH], lane: [0; WIDTH] }
     }
 
     /// Draws a lane in every slot.
@@ -84,10 +74,10 @@ impl Descents {
     fn last(&mut self, slot: usize, weights: &Weights) -> Option<usize> {
         let last = weights.0.iter().rposition(|weights| weights[slot] > 0.0)?;
         let weight = weights.0[last][slot];
-        let sum: f32 = weights.0[..=last].iter().fold(0.0, |sum, weights| sum + weights[slot]);
-        let total = self.total[slot];
-        self.pmf[slot] *= weight / total;
-        self.u[slot] = remainder(self.x[slot], sum, weight);
+        // Of all weights, too: those behind are none.
+        let sum = weights.0[..=last].iter().fold(0.0, |sum, weights| sum + weights[slot]);
+        self.pmf[slot] *= weight / sum;
+        self.u[slot] = remainder(self.u[slot] * sum, sum, weight);
         Some(last)
     }
 }
@@ -129,8 +119,6 @@ vectorized! {
             descents.pmf[i] = if chosen { pmf } else { descents.pmf[i] };
             descents.u[i] = if chosen { u } else { descents.u[i] };
             descents.lane[i] = below;
-            descents.x[i] = x;
-            descents.total[i] = total[i];
         }
     }
 }
