@@ -29,8 +29,8 @@ pub use mesh::{BilinearMesh, Mesh, MeshError, MeshParts, TriangleMesh};
 pub use plain::PlainSurfaces;
 pub use sample::{ReferencePoint, ReferencePoints, ShapeSample, ShapeSamples, SurfacePoint};
 pub use shape::{
-    Ball, Balls, BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Primitive, Rectangle, Shape,
-    ShapeError, ShapeHit, Sphere, SphereParams, Triangle,
+    Ball, Balls, BilinearPatch, Cylinder, CylinderParams, Disk, DiskParams, Facet, Facets, Primitive,
+    Rectangle, Shape, ShapeError, ShapeHit, Sphere, SphereParams, Triangle,
 };
 pub use subdivision::{SubdivisionError, loop_subdivide};
 pub use world::{Geometry, Group, Instance, World, WorldDesc, WorldError, WorldStats};

@@ -1,4 +1,4 @@
-use super::{ShapeHit, unit_cross};
+use super::{ShapeHit, facet::Facet, unit_cross};
 use crate::{
     NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
     mesh::is_degenerate,
@@ -63,8 +63,17 @@ impl<'a> Triangle<'a> {
     }
 
     pub(super) fn area(&self) -> f32 {
-        let [a, b, c] = self.positions();
-        (0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length()) as f32
+        area(self.positions())
+    }
+
+    /// By itself, where it has its vertices to itself, and no normals of theirs that turn it around.
+    #[inline]
+    pub(super) fn facet(&self) -> Option<Facet<'a>> {
+        if self.mesh.parts().normals.is_some() {
+            return None;
+        }
+        let corners = self.mesh.separate_positions(self.index)?;
+        Some(Facet { corners, flip: self.mesh.flip })
     }
 
     #[inline]
@@ -180,12 +189,11 @@ impl<'a> Triangle<'a> {
     }
 
     fn seen_from(&self, reference: &ReferencePoint) -> Option<SphericalTriangle> {
-        let [a, b, c] = self.positions();
-        let edge2 = b.distance_squared(a).max(c.distance_squared(a));
-        if reference.p.distance_squared(a) > FAR * FAR * edge2 {
+        let corners = self.positions();
+        if is_far(&corners, reference.p) {
             return None;
         }
-        SphericalTriangle::new(reference.p, [a, b, c]).filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()))
+        SphericalTriangle::new(reference.p, corners).filter(|t| SPHERICAL_RANGE.contains(&t.solid_angle()))
     }
 
     pub(super) fn sample_from(&self, reference: &ReferencePoint, u: Vec2) -> Option<ShapeSample> {
@@ -237,6 +245,12 @@ impl FlatTriangle {
         Self { corners, weights: weights(u, v) }
     }
 
+    /// The point that [`sample_uniform_triangle`] chooses.
+    #[inline(always)]
+    pub(super) fn sample(corners: [Vec3; 3], u: Vec2) -> Self {
+        Self { corners, weights: sample_uniform_triangle(u).to_array() }
+    }
+
     /// The point.
     #[inline(always)]
     pub(crate) fn p(&self) -> Vec3 {
@@ -274,6 +288,19 @@ impl FlatTriangle {
 #[inline(always)]
 fn vertex_order_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     unit_cross(b - a, c - a).unwrap_or_default()
+}
+
+/// The area of a triangle.
+#[inline(always)]
+pub(super) fn area([a, b, c]: [Vec3; 3]) -> f32 {
+    (0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length_squared().sqrt()) as f32
+}
+
+/// Whether a triangle looks so small from `p` that it is sampled by area.
+#[inline(always)]
+pub(super) fn is_far(&[a, b, c]: &[Vec3; 3], p: Vec3) -> bool {
+    let edge2 = b.distance_squared(a).max(c.distance_squared(a));
+    p.distance_squared(a) > FAR * FAR * edge2
 }
 
 /// The texture coordinates over a triangle.

@@ -413,6 +413,59 @@ fn balls_side_by_side_are_sampled_as_each_by_itself() {
 }
 
 #[test]
+fn facets_side_by_side_are_sampled_as_each_by_itself() {
+    let mut rng = Rng::new(12);
+    let (mut sampled, mut none) = (0, 0);
+    for _ in 0..200 {
+        let (mut facets, mut from, mut u) = (Facets::default(), ReferencePoints::default(), Vec2s::ZERO);
+        let mut alone = [const { None }; WIDTH];
+        for (slot, alone) in alone.iter_mut().enumerate() {
+            let at = rng.vec3();
+            let mut corners = [at, at + 0.01 * rng.direction(), at + 0.01 * rng.direction()];
+            // Without area, too.
+            if slot == 5 {
+                corners[2] = corners[1];
+            }
+            let parts =
+                MeshParts { positions: corners.to_vec(), indices: vec![0, 1, 2], ..MeshParts::default() };
+            let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, slot % 3 == 0).unwrap();
+            let shape = Shape::Triangles(Arc::new(mesh));
+            let facet = shape.primitive(0).facet().unwrap();
+            let reference = references(&mut rng, at, &[1.0, 2.0])[1];
+            assert!(facet.is_far(reference.p) && !facet.is_far(at + Vec3::splat(0.02)));
+            facets.set(slot, facet);
+            from.set(slot, reference);
+            u.set(slot, rng.vec2());
+            *alone = shape.primitive(0).sample_from(&reference, u.get(slot));
+        }
+        let mut out = ShapeSamples::default();
+        facets.samples_from(&from, &u, &mut out);
+        for (slot, alone) in alone.into_iter().enumerate() {
+            let one = (out.p.get(slot), out.p_error.get(slot), out.n.get(slot), out.pdf[slot]);
+            match alone {
+                Some(other) => assert_eq!(one, (other.p, other.p_error, other.n, other.pdf), "{slot}"),
+                None => assert_eq!(out.pdf[slot], 0.0),
+            }
+            *(if alone.is_some() { &mut sampled } else { &mut none }) += 1;
+        }
+    }
+    assert!(sampled > 2500 && none >= 200);
+    // Vertices that are shared or have normals make no facets.
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE];
+    let shared = MeshParts { positions, indices: vec![0, 1, 2, 2, 1, 3], ..MeshParts::default() };
+    let bent = MeshParts {
+        positions: shared.positions[..3].to_vec(),
+        indices: vec![0, 1, 2],
+        normals: Some(vec![Vec3::Z; 3]),
+        ..MeshParts::default()
+    };
+    for parts in [shared, bent] {
+        let mesh = TriangleMesh::new(parts, &Transform::IDENTITY, false).unwrap();
+        assert_eq!(Shape::Triangles(Arc::new(mesh)).primitive(0).facet(), None);
+    }
+}
+
+#[test]
 fn areas_and_solid_angles_match_closed_forms() {
     // An octant of the sphere: π/2.
     let octant = one_triangle([Vec3::X, Vec3::Y, Vec3::Z]);

@@ -7,7 +7,7 @@ use super::{Emission, LightBounds, LightSample, LightStrategy, ShadowTarget};
 use std::f32::consts::PI;
 use std::sync::Arc;
 use tenfold_geometry::{
-    Ball, NormalCone, Primitive, ReferencePoint, ReferencePoints, Shape, ShapeSamples, SurfacePoint,
+    NormalCone, Primitive, ReferencePoint, ReferencePoints, Shape, ShapeSamples, SurfacePoint,
 };
 use tenfold_math::{Slots, Vec2, Vec2s, Vec3};
 use tenfold_spectrum::{SampledSpectrum, SampledWavelengths};
@@ -94,7 +94,8 @@ impl DiffuseAreaLight {
             }
     }
 
-    #[cfg(test)]
+    /// Its primitive.
+    #[inline]
     pub(super) fn primitive(&self) -> Primitive<'_> {
         self.emitter().primitive()
     }
@@ -198,15 +199,9 @@ impl DiffuseAreaLight {
         self.emitting.surface.prefetch(self.primitive as usize);
     }
 
-    /// The light as a ball that [`DiffuseAreaLight::sample`] samples as such, where it is one.
-    #[inline]
-    pub(super) fn ball(&self, strategy: LightStrategy) -> Option<&Ball> {
-        self.emitter().primitive().ball().filter(|_| self.is_sampled_evenly(strategy))
-    }
-
     /// Whether it emits the same everywhere and is sampled by what is seen of it.
     #[inline]
-    fn is_sampled_evenly(&self, strategy: LightStrategy) -> bool {
+    pub(super) fn is_sampled_evenly(&self, strategy: LightStrategy) -> bool {
         matches!(self.emission().radiance, AreaRadiance::Uniform(_))
             && matches!(strategy, ByTexture | Complementary | SolidAngle)
     }

@@ -2,7 +2,7 @@
 
 use super::lights::{Choice, Lights};
 use super::{DiffuseAreaLight, Light, LightSample, LightStrategy, ShadowRay};
-use tenfold_geometry::{Balls, ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
+use tenfold_geometry::{Balls, Facets, ReferencePoints, SHADOW_T_MAX, ShapeSamples, ray_between};
 use tenfold_math::{Floats, Id, Rays, Slots, Vec2, Vec2s, Vec3s, WIDTH, prefetch, vectorized};
 use tenfold_spectrum::{SampledWavelengths, Spectra};
 
@@ -24,9 +24,10 @@ pub struct LightSamples {
     pub shadow: Rays,
     /// See [`ShadowRay::t_max`].
     pub t_max: Floats,
-    /// Room for points on lights, and the lights that are balls.
+    /// Room for points on lights, the lights that are balls, and those that are far triangles.
     points: ShapeSamples,
     balls: Balls,
+    facets: Facets,
 }
 
 impl LightSamples {
@@ -61,10 +62,16 @@ impl Lights {
             choices[slot] = choice;
             left.insert(slot);
         });
+        let mut facets = [None; WIDTH];
         for slot in left {
             let Some(area) = self.area(&choices[slot]) else { continue };
             area.prefetch();
-            if let Some(ball) = area.ball(strategy) {
+            if !area.is_sampled_evenly(strategy) {
+                continue;
+            }
+            let primitive = area.primitive();
+            facets[slot] = primitive.facet();
+            if let Some(ball) = primitive.ball() {
                 out.balls.set(slot, ball);
                 balls.insert(slot);
             }
@@ -74,6 +81,18 @@ impl Lights {
             let seen = out.balls.samples_from(balls, from, u, &mut out.points);
             lit = self.arriving(seen, &choices, from, &wavelengths, out);
             left = left.without(seen);
+        }
+        let far = left.keep(|slot| match facets[slot] {
+            Some(facet) if facet.is_far(from.p.get(slot)) => {
+                out.facets.set(slot, facet);
+                true
+            }
+            _ => false,
+        });
+        if far.len() >= WORTHWHILE {
+            out.facets.samples_from(from, u, &mut out.points);
+            lit = lit.or(self.arriving(far, &choices, from, &wavelengths, out));
+            left = left.without(far);
         }
         while let Some(first) = left.into_iter().next() {
             let light = choices[first].light;

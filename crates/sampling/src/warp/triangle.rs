@@ -2,15 +2,11 @@ use tenfold_math::{Vec2, Vec3};
 
 /// Uniform barycentric coordinates of a triangle, by the map of Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
 /// The density per unit of area is one over the triangle's area.
-#[inline]
+#[inline(always)]
 pub fn sample_uniform_triangle(u: Vec2) -> Vec3 {
-    let (b0, b1) = if u.x < u.y {
-        let b0 = 0.5 * u.x;
-        (b0, u.y - b0)
-    } else {
-        let b1 = 0.5 * u.y;
-        (u.x - b1, b1)
-    };
+    // Both, and no branch: for loops over slots.
+    let half = 0.5 * u;
+    let (b0, b1) = if u.x < u.y { (half.x, u.y - half.x) } else { (u.x - half.y, half.y) };
     // Not 1 − b0 − b1, which may round below zero.
     Vec3::new(b0, b1, (1.0 - (b0 + b1)).max(0.0))
 }

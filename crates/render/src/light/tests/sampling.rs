@@ -145,11 +145,21 @@ fn points_side_by_side_see_what_each_sees_by_itself() {
     all.extend(area(disk(1.4, 0.6), 3.0, false));
     all.push(textured(patch(ceiling(), &[])));
     let mut rng = Rng::new(21);
+    // Most of them far.
+    let mut scattered = Vec::new();
+    for size in [0.01, 0.01, 0.4, 0.01, 0.01] {
+        let at = Vec3::new(0.0, 0.0, 1.0) + 0.5 * rng.direction();
+        let corners = [at, at + size * rng.direction(), at + size * rng.direction()];
+        scattered.extend(area(triangles(&corners, &[0, 1, 2]), 3.0, scattered.len() == 1));
+    }
+    all.extend(scattered.clone());
     let (mut out, mut counts) = (LightSamples::default(), [0; 2]);
-    for (lights, strategy) in [&balls[..1], &balls, &all[2..3], &all].into_iter().flat_map(|lights| {
-        let lights = Lights::build(lights.to_vec());
-        LightStrategy::ALL.map(|strategy| (lights.clone(), strategy))
-    }) {
+    for (lights, strategy) in
+        [&balls[..1], &balls, &all[2..3], &scattered, &all].into_iter().flat_map(|lights| {
+            let lights = Lights::build(lights.to_vec());
+            LightStrategy::ALL.map(|strategy| (lights.clone(), strategy))
+        })
+    {
         for round in 0..50 {
             let (mut from, mut u_choice, mut u) = (ReferencePoints::default(), [0.0; WIDTH], Vec2s::ZERO);
             for slot in 0..WIDTH {

@@ -1,0 +1,59 @@
+//! Triangles by themselves, which are far: sampled side by side.
+
+use super::triangle::{FlatTriangle, area, is_far};
+use crate::{ReferencePoints, ShapeSamples, sample::area_to_solid_angle};
+use tenfold_math::{Vec2s, Vec3, Vec3s, WIDTH, vectorized};
+
+/// A triangle without vertex normals.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Facet<'a> {
+    pub(super) corners: &'a [Vec3; 3],
+    /// Whether its normal is against the order of the corners.
+    pub(super) flip: bool,
+}
+
+impl Facet<'_> {
+    /// Whether it looks so small from a point that it is sampled by area.
+    #[inline]
+    pub fn is_far(&self, p: Vec3) -> bool {
+        is_far(self.corners, p)
+    }
+}
+
+/// A [`Facet`] in each slot.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Facets {
+    corners: [Vec3s; 3],
+    flip: [bool; WIDTH],
+}
+
+impl Facets {
+    /// Sets the facet in a slot.
+    #[inline(always)]
+    pub fn set(&mut self, slot: usize, facet: Facet<'_>) {
+        self.corners.iter_mut().zip(facet.corners).for_each(|(corners, &corner)| corners.set(slot, corner));
+        self.flip[slot] = facet.flip;
+    }
+
+    /// [`Primitive::sample_from`](crate::Primitive::sample_from) for the facet and the point in each slot, from which it must be far; with a density of 0 in place of `None`.
+    pub fn samples_from(&self, references: &ReferencePoints, u: &Vec2s, out: &mut ShapeSamples) {
+        samples_from(self, references, u, out);
+    }
+}
+
+vectorized! {
+    /// See [`Facets::samples_from`].
+    fn samples_from(facets: &Facets, references: &ReferencePoints, u: &Vec2s, out: &mut ShapeSamples) {
+        for i in 0..WIDTH {
+            let corners = facets.corners.each_ref().map(|corners| corners.get(i));
+            let point = FlatTriangle::sample(corners, u.get(i));
+            let (p, n) = (point.p(), point.vertex_order_normal());
+            let n = if facets.flip[i] { -n } else { n };
+            let pdf = area_to_solid_angle(1.0 / area(corners), p - references.p.get(i), n);
+            out.p.set(i, p);
+            out.p_error.set(i, point.p_error());
+            out.n.set(i, n);
+            out.pdf[i] = if pdf.is_finite() & (pdf > 0.0) { pdf } else { 0.0 };
+        }
+    }
+}
