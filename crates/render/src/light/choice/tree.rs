@@ -178,17 +178,19 @@ impl LightTree {
         while !under_way.is_empty() {
             weights.weigh(&self.nodes, &descents.node, under_way, from);
             descents.choose(&weights);
-            under_way = under_way.keep(|slot| {
-                let Some(lane) = descents.lane(slot, &weights) else { return false };
+            let mut still = Slots::NONE;
+            for slot in under_way {
+                let Some(lane) = descents.lane(slot, &weights) else { continue };
                 let link = self.nodes[descents.node[slot] as usize].links[lane];
                 if link & LIGHT != 0 {
                     take(slot, TreeSample { light: link & !LIGHT, pmf: descents.pmf[slot] });
-                    return false;
+                } else {
+                    descents.node[slot] = link;
+                    prefetch(&self.nodes[link as usize]);
+                    still.insert(slot);
                 }
-                descents.node[slot] = link;
-                prefetch(&self.nodes[link as usize]);
-                true
-            });
+            }
+            under_way = still;
         }
     }
 
