@@ -364,6 +364,9 @@ pub(crate) fn fastest_axis(d: Vec3) -> u32 {
     u32::from(!((d.x > d.y) & (d.x > d.z))) * (2 - u32::from(d.y > d.z))
 }
 
+/// The axes that become x, y and z where z was each. In memory, lest the compiler writes them anew for every ray.
+static AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+
 impl RayShear {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
@@ -374,7 +377,7 @@ impl RayShear {
     /// The ray from `origin` that runs fastest along `axis`, where its shear is known.
     #[inline(always)]
     pub(crate) fn known(origin: Vec3, axis: usize, shear: Vec3) -> Self {
-        Self { origin, axes: [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]][axis & 3], shear }
+        Self { origin, axes: AXES[axis & 3], shear }
     }
 
     /// The shear of rays in the direction `d`, which is fastest along `axis`.
