@@ -120,14 +120,17 @@ impl Clusters {
         importance(self, from)
     }
 
-    // Unlike `clamp`, `max` turns what is not a number into 0.
-    #[allow(clippy::manual_clamp)]
     #[inline(always)]
     pub(super) fn importance_in_lanes(&self, from: &ReferencePoint) -> [f32; LANES] {
-        let (p, n) = (from.p, from.ns);
-        let (on_surface, one_sided) = (n != Vec3::ZERO, from.one_sided);
-        let mut importance = [0.0; LANES];
-        // Without branches or calls, so that the compiler makes vectors of the lanes.
+        let mut views = Views::ZERO;
+        self.look(from.p, &mut views);
+        self.importance_of(&views, from.ns, from.one_sided)
+    }
+
+    /// The views from `p`.
+    // Here and below without branches or calls, so that the compiler makes vectors of the lanes.
+    #[inline(always)]
+    pub(super) fn look(&self, p: Vec3, views: &mut Views) {
         for i in 0..LANES {
             let c = self.centre(i);
             let d = [p.x - c.x, p.y - c.y, p.z - c.z];
@@ -138,12 +141,27 @@ impl Clusters {
             let distance2 = d2.max(r2);
             let inverse2 = 1.0 / distance2;
             let inverse = inverse2.sqrt();
-            // From the cluster; of no matter inside.
-            let w = [d[0] * inverse, d[1] * inverse, d[2] * inverse];
-            // Half angle under which `p` sees the sphere around the cluster.
+            for k in 0..3 {
+                views.w[k][i] = d[k] * inverse;
+            }
             let sin_b = r * inverse;
-            let cos_b = if inside { -1.0 } else { sin_of(sin_b) };
-            // Angle from the nearest normal to the nearest of the directions in which the cluster sees `p`.
+            views.sin_b[i] = sin_b;
+            views.cos_b[i] = if inside { -1.0 } else { sin_of(sin_b) };
+            (views.distance2[i], views.inverse2[i]) = (distance2, inverse2);
+        }
+    }
+
+    /// [`Clusters::importance`] for a point with the normal `n`.
+    // Unlike `clamp`, `max` turns what is not a number into 0.
+    #[allow(clippy::manual_clamp)]
+    #[inline(always)]
+    pub(super) fn importance_of(&self, views: &Views, n: Vec3, one_sided: bool) -> [f32; LANES] {
+        let on_surface = n != Vec3::ZERO;
+        let mut importance = [0.0; LANES];
+        for i in 0..LANES {
+            let w = [views.w[0][i], views.w[1][i], views.w[2][i]];
+            let (sin_b, cos_b) = (views.sin_b[i], views.cos_b[i]);
+            // Angle from the nearest normal to the nearest of the directions in which the cluster sees the point.
             let axis = |k: usize| f32::from(self.axis[k][i]);
             let cos_w = (axis(0) * w[0] + axis(1) * w[1] + axis(2) * w[2]) * (1.0 / AXIS_UNIT);
             let cos_w = if self.intensity[i] & TWO_SIDED != 0 { cos_w.abs() } else { cos_w };
@@ -157,12 +175,37 @@ impl Clusters {
             let facing = cos_difference(cos_i, sin_of(cos_i), cos_b, sin_b).max(0.0);
             let facing = if on_surface { facing } else { 1.0 };
             let intensity = f32::from_bits(u32::from(self.intensity[i] & !TWO_SIDED) << 16);
-            let value = intensity * cos_emitted.max(LEAST_COSINE) * facing * inverse2;
-            let reached = (cos_emitted > cos_emission(self.cos_emission[i])) & (distance2 > 0.0);
+            let value = intensity * cos_emitted.max(LEAST_COSINE) * facing * views.inverse2[i];
+            let reached = (cos_emitted > cos_emission(self.cos_emission[i])) & (views.distance2[i] > 0.0);
             importance[i] = if reached { value.max(0.0).min(MAX_IMPORTANCE) } else { 0.0 };
         }
         importance
     }
+}
+
+/// How a point sees [`Clusters`]: by themselves, since the processor has few of the long chains of roots that lead to importance at work at a time, and more of
+/// their halves.
+#[derive(Copy, Clone)]
+#[repr(C, align(64))]
+pub(super) struct Views {
+    /// Unit directions from the clusters; of no matter inside.
+    w: [[f32; LANES]; 3],
+    /// Half angles under which the spheres around the clusters are seen.
+    sin_b: [f32; LANES],
+    cos_b: [f32; LANES],
+    /// Squared distances, as they count, and their inverse.
+    distance2: [f32; LANES],
+    inverse2: [f32; LANES],
+}
+
+impl Views {
+    pub(super) const ZERO: Self = Self {
+        w: [[0.0; LANES]; 3],
+        sin_b: [0.0; LANES],
+        cos_b: [0.0; LANES],
+        distance2: [0.0; LANES],
+        inverse2: [0.0; LANES],
+    };
 }
 
 vectorized! {

@@ -1,6 +1,9 @@
 //! One step down the light tree for the points in all slots: as for each alone, to the bit.
 
-use super::{clusters::LANES, tree::Node};
+use super::{
+    clusters::{LANES, Views},
+    tree::Node,
+};
 use tenfold_geometry::ReferencePoints;
 use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots, WIDTH, vectorized};
 
@@ -31,8 +34,13 @@ vectorized! {
         from: &ReferencePoints,
         weights: &mut Weights,
     ) {
+        let mut views = [Views::ZERO; WIDTH];
         for slot in slots {
-            let importance = nodes[indices[slot] as usize].clusters.importance_in_lanes(&from.get(slot));
+            nodes[indices[slot] as usize].clusters.look(from.p.get(slot), &mut views[slot]);
+        }
+        for slot in slots {
+            let clusters = &nodes[indices[slot] as usize].clusters;
+            let importance = clusters.importance_of(&views[slot], from.ns.get(slot), from.one_sided[slot]);
             for (lane, weight) in importance.into_iter().enumerate() {
                 weights.0[lane][slot] = weight;
             }
