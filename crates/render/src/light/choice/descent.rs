@@ -7,11 +7,14 @@ use super::{
 use tenfold_geometry::ReferencePoints;
 use tenfold_math::{Floats, ONE_MINUS_EPSILON, Slots, WIDTH, vectorized};
 
-/// The weights of the lanes of a node for the point in each slot.
-pub(super) struct Weights([Floats; LANES]);
+/// The weights of the lanes of a node for the point in each slot, and room for the views that lead to them.
+pub(super) struct Weights {
+    lanes: [Floats; LANES],
+    views: [Views; WIDTH],
+}
 
 impl Weights {
-    pub(super) const ZERO: Self = Self([[0.0; WIDTH]; LANES]);
+    pub(super) const ZERO: Self = Self { lanes: [[0.0; WIDTH]; LANES], views: [Views::ZERO; WIDTH] };
 
     /// Those of the nodes of some indices, for the points in `slots`; others stay as they are.
     pub(super) fn weigh(
@@ -34,7 +37,7 @@ vectorized! {
         from: &ReferencePoints,
         weights: &mut Weights,
     ) {
-        let mut views = [Views::ZERO; WIDTH];
+        let Weights { lanes, views } = weights;
         for slot in slots {
             nodes[indices[slot] as usize].clusters.look(from.p.get(slot), &mut views[slot]);
         }
@@ -42,7 +45,7 @@ vectorized! {
             let clusters = &nodes[indices[slot] as usize].clusters;
             let importance = clusters.importance_of(&views[slot], from.ns.get(slot), from.one_sided[slot]);
             for (lane, weight) in importance.into_iter().enumerate() {
-                weights.0[lane][slot] = weight;
+                lanes[lane][slot] = weight;
             }
         }
     }
@@ -80,10 +83,10 @@ impl Descents {
     /// The last lane of positive weight takes what rounding leaves over.
     #[cold]
     fn last(&mut self, slot: usize, weights: &Weights) -> Option<usize> {
-        let last = weights.0.iter().rposition(|weights| weights[slot] > 0.0)?;
-        let weight = weights.0[last][slot];
+        let last = weights.lanes.iter().rposition(|weights| weights[slot] > 0.0)?;
+        let weight = weights.lanes[last][slot];
         // Of all weights, too: those behind are none.
-        let sum = weights.0[..=last].iter().fold(0.0, |sum, weights| sum + weights[slot]);
+        let sum = weights.lanes[..=last].iter().fold(0.0, |sum, weights| sum + weights[slot]);
         self.pmf[slot] *= weight / sum;
         self.u[slot] = remainder(self.u[slot] * sum, sum, weight);
         Some(last)
@@ -103,7 +106,7 @@ vectorized! {
         let mut total = [0.0; WIDTH];
         for lane in 0..LANES {
             for i in 0..WIDTH {
-                total[i] += weights.0[lane][i];
+                total[i] += weights.lanes[lane][i];
             }
             sums[lane] = total;
         }
@@ -117,7 +120,7 @@ vectorized! {
             let (mut weight, mut sum) = (0.0, 0.0);
             for lane in 0..LANES {
                 let is_chosen = below == lane as u32;
-                let (its_weight, its_sum) = (weights.0[lane][i], sums[lane][i]);
+                let (its_weight, its_sum) = (weights.lanes[lane][i], sums[lane][i]);
                 weight = if is_chosen { its_weight } else { weight };
                 sum = if is_chosen { its_sum } else { sum };
             }
