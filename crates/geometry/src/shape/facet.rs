@@ -1,18 +1,28 @@
-//! Triangles by themselves, which are far: sampled side by side.
+//! Triangles without what meshes add to them: those that are far are sampled side by side.
 
-use super::triangle::{FlatTriangle, area, is_far};
+use super::triangle::{FlatTriangle, Triangle, area, is_far};
 use crate::{ReferencePoints, ShapeSamples, sample::area_to_solid_angle};
 use tenfold_math::{Vec2s, Vec3, Vec3s, WIDTH, vectorized};
 
-/// A triangle without vertex normals.
+/// A triangle that has its vertices to itself, and no normals of theirs.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Facet<'a> {
-    pub(super) corners: &'a [Vec3; 3],
+    corners: &'a [Vec3; 3],
     /// Whether its normal is against the order of the corners.
-    pub(super) flip: bool,
+    flip: bool,
 }
 
-impl Facet<'_> {
+impl<'a> Facet<'a> {
+    /// The triangle, where it is one.
+    #[inline]
+    pub(super) fn of(Triangle { mesh, index }: &Triangle<'a>) -> Option<Self> {
+        // Normals of vertices may turn it around.
+        if mesh.parts().normals.is_some() {
+            return None;
+        }
+        Some(Self { corners: mesh.separate_positions(*index)?, flip: mesh.flip })
+    }
+
     /// Whether it looks so small from a point that it is sampled by area.
     #[inline]
     pub fn is_far(&self, p: Vec3) -> bool {

@@ -200,11 +200,11 @@ impl<'a> Primitive<'a> {
         }
     }
 
-    /// The primitive as a triangle by itself, where it is one: [`Facets::samples_from`] samples many that are far as [`Primitive::sample_from`], faster.
+    /// The primitive as a triangle that has its vertices to itself and no normals of theirs, where it is one: [`Facets::samples_from`] samples many that are far as [`Primitive::sample_from`], faster.
     #[inline]
     pub fn facet(&self) -> Option<Facet<'a>> {
         match self {
-            Self::Triangle(triangle) => triangle.facet(),
+            Self::Triangle(triangle) => Facet::of(triangle),
             Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) | Self::Patch(_) => None,
         }
     }

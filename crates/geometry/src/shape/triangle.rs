@@ -1,4 +1,4 @@
-use super::{ShapeHit, facet::Facet, unit_cross};
+use super::{ShapeHit, unit_cross};
 use crate::{
     NormalCone, ReferencePoint, Shading, ShapeSample, SurfaceInteraction, SurfacePoint, TriangleMesh,
     mesh::is_degenerate,
@@ -18,8 +18,8 @@ const _: () = assert!(1.02 < 2.0 * *SPHERICAL_RANGE.start() * (FAR - 1.0) * (FAR
 /// A triangle of a mesh.
 #[derive(Copy, Clone, Debug)]
 pub struct Triangle<'a> {
-    mesh: &'a TriangleMesh,
-    index: usize,
+    pub(super) mesh: &'a TriangleMesh,
+    pub(super) index: usize,
 }
 
 impl<'a> Triangle<'a> {
@@ -64,16 +64,6 @@ impl<'a> Triangle<'a> {
 
     pub(super) fn area(&self) -> f32 {
         area(self.positions())
-    }
-
-    /// By itself, where it has its vertices to itself, and no normals of theirs that turn it around.
-    #[inline]
-    pub(super) fn facet(&self) -> Option<Facet<'a>> {
-        if self.mesh.parts().normals.is_some() {
-            return None;
-        }
-        let corners = self.mesh.separate_positions(self.index)?;
-        Some(Facet { corners, flip: self.mesh.flip })
     }
 
     #[inline]
