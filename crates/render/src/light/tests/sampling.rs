@@ -145,12 +145,12 @@ fn points_side_by_side_see_what_each_sees_by_itself() {
     all.extend(area(disk(1.4, 0.6), 3.0, false));
     all.push(textured(patch(ceiling(), &[])));
     let mut rng = Rng::new(21);
-    // Most of them far.
+    // Most of them far, and one near, which all send as much.
     let mut scattered = Vec::new();
-    for size in [0.01, 0.01, 0.4, 0.01, 0.01] {
+    for size in [0.01f32, 0.01, 0.4, 0.01, 0.01] {
         let at = Vec3::new(0.0, 0.0, 1.0) + 0.5 * rng.direction();
         let corners = [at, at + size * rng.direction(), at + size * rng.direction()];
-        scattered.extend(area(triangles(&corners, &[0, 1, 2]), 3.0, scattered.len() == 1));
+        scattered.extend(area(triangles(&corners, &[0, 1, 2]), 1e-3 / (size * size), true));
     }
     all.extend(scattered.clone());
     let (mut out, mut counts) = (LightSamples::default(), [0; 2]);
