@@ -1,7 +1,7 @@
 //! Triangles without what meshes add to them: those that are far are sampled side by side.
 
 use super::triangle::{FlatTriangle, Triangle, area, is_far};
-use crate::{ReferencePoints, ShapeSamples, sample::area_to_solid_angle};
+use crate::{ReferencePoints, ShapeSamples, sample::pdf_by_solid_angle};
 use tenfold_math::{Vec2s, Vec3, Vec3s, WIDTH, vectorized};
 
 /// A triangle that has its vertices to itself, and no normals of theirs.
@@ -59,11 +59,10 @@ vectorized! {
             let point = FlatTriangle::sample(corners, u.get(i));
             let (p, n) = (point.p(), point.vertex_order_normal());
             let n = if facets.flip[i] { -n } else { n };
-            let pdf = area_to_solid_angle(1.0 / area(corners), p - references.p.get(i), n);
             out.p.set(i, p);
             out.p_error.set(i, point.p_error());
             out.n.set(i, n);
-            out.pdf[i] = if pdf.is_finite() & (pdf > 0.0) { pdf } else { 0.0 };
+            out.pdf[i] = pdf_by_solid_angle(1.0 / area(corners), p - references.p.get(i), n);
         }
     }
 }
